@@ -15,6 +15,8 @@
 
 #include <fmt/core.h>
 
+#include "common/process/programs.h"
+
 namespace fogline::benchmarks {
 namespace {
 
@@ -24,7 +26,7 @@ class Scratch {
  public:
   Scratch() {
     // The folder is in Testing/tmp, because tools/test removes old folders from there.
-    const auto build = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+    const std::filesystem::path build = OwnFolder().parent_path();
     std::filesystem::create_directories(build / "Testing" / "tmp");
     std::string name = (build / "Testing" / "tmp" / "bench-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
@@ -68,9 +70,7 @@ std::string LastLine(std::string text) {
 
 }  // namespace
 
-std::string ProgramPath(const std::string& name) {
-  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
-}
+std::string ProgramPath(const std::string& name) { return (OwnFolder() / name).string(); }
 
 const std::filesystem::path& ScratchFolder() {
   static const Scratch scratch;

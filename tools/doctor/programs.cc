@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "common/clock.h"
+#include "common/process/programs.h"
 #include "common/text.h"
 #include "services/graph.h"
 #include "services/runtime/process/version.h"
@@ -64,7 +65,7 @@ std::map<Role, std::string> AskVersions(const fs::path& programs) {
   processes::ProcessGroup group;
   for (const RoleInfo& info : kRoles) {
     const fs::path program = programs / fmt::format("fogline-{}", info.name);
-    if (spy::IsExecutable(program)) group.Start(info.role, program, {"--version"});
+    if (IsExecutable(program)) group.Start(info.role, program, {"--version"});
   }
   const TimePoint end = Clock::now() + kLimit;
   while (!group.empty() && Clock::now() < end) {
@@ -83,7 +84,7 @@ void ExamineTools(const fs::path& programs, Findings& findings) {
       {"lcm", Level::kOk,
        fmt::format("LCM {}.{}.{}", LCM_MAJOR_VERSION, LCM_MINOR_VERSION, LCM_MICRO_VERSION), ""});
   for (const char* program : {"lcm-logger", "lcm-logplayer"}) {
-    const fs::path file = spy::InPath(program);
+    const fs::path file = FindProgram(program);
     if (file.empty()) {
       findings.push_back({"lcm_tools", Level::kWarning, fmt::format("there is no {}", program),
                           "apt-get install liblcm-bin"});

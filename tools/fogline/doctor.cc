@@ -10,6 +10,7 @@
 #include "common/clock.h"
 #include "common/errors.h"
 #include "common/interrupt.h"
+#include "common/process/programs.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -73,7 +74,7 @@ void Attempt(const char* check, doctor::Findings& findings, const std::function<
 
 doctor::Findings Examine(const DoctorArguments& arguments) {
   const std::string url = arguments.network.Url();
-  const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::filesystem::path programs = OwnFolder();
   doctor::Findings findings;
   Attempt("network", findings, [&] { doctor::ExamineNetwork(url, findings); });
   const bool works = std::ranges::none_of(

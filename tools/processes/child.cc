@@ -19,6 +19,7 @@
 
 #include "common/file.h"
 #include "common/process/poll.h"
+#include "common/process/programs.h"
 
 namespace fogline::processes {
 namespace {
@@ -152,9 +153,7 @@ std::string HowItEnded(int status) {
   return fmt::format("exited with code {}", WEXITSTATUS(status));
 }
 
-std::filesystem::path ProgramBeside(std::string_view name) {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
-}
+std::filesystem::path ProgramBeside(std::string_view name) { return OwnFolder() / name; }
 
 std::filesystem::path ProgramOf(Role role) {
   return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));

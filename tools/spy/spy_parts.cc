@@ -9,11 +9,11 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/core.h>
 
+#include "common/process/programs.h"
 #include "common/text.h"
 
 namespace fogline::spy {
@@ -39,20 +39,9 @@ int TryToConnect(std::string_view name) {
 
 }  // namespace
 
-bool IsExecutable(const fs::path& file) { return access(file.c_str(), X_OK) == 0; }
-
-fs::path InPath(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (const fs::path file = fs::path(folder) / program; IsExecutable(file)) return file;
-  }
-  return {};
-}
-
 fs::path JavaProgram() {
   const char* home = std::getenv("JAVA_HOME");
-  if (home == nullptr || *home == '\0') return InPath("java");
+  if (home == nullptr || *home == '\0') return FindProgram("java");
   const fs::path java = fs::path(home) / "bin/java";
   return IsExecutable(java) ? java : fs::path();
 }

@@ -8,12 +8,6 @@
 
 namespace fogline::spy {
 
-/// Whether this user may execute a file.
-bool IsExecutable(const std::filesystem::path& file);
-
-/// Path of a program as the shell finds it; "" if it is not in PATH.
-std::filesystem::path InPath(const std::string& program);
-
 /// The Java of JAVA_HOME, or the shell's Java if JAVA_HOME is not set; "" if there is no Java.
 std::filesystem::path JavaProgram();
 

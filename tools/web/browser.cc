@@ -9,24 +9,14 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
-#include <sstream>
 #include <string_view>
+
+#include "common/process/programs.h"
 
 namespace fogline::web {
 namespace {
 
 constexpr const char* kOpener = "xdg-open";
-
-/// The path of a program in $PATH; "" if $PATH does not have the program.
-std::string FindProgram(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string program = (folder.empty() ? "." : folder) + "/" + name;
-    if (access(program.c_str(), X_OK) == 0) return program;
-  }
-  return "";
-}
 
 bool IsSet(const char* variable) {
   const char* value = std::getenv(variable);
@@ -54,7 +44,7 @@ bool HasBrowser() {
 }
 
 void OpenBrowser(const std::string& url) {
-  std::string program = FindProgram(kOpener);
+  std::string program = FindProgram(kOpener).string();
   std::string address = url;
   const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
   const pid_t child = fork();

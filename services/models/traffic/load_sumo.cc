@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/process/programs.h"
 #include "common/text.h"
 
 namespace fogline::models {
@@ -44,10 +45,7 @@ std::int64_t StepOf(const Scenario& scenario) {
 
 }  // namespace
 
-std::filesystem::path SumoModule() {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  return program.parent_path().parent_path() / "lib/fogline/sumo.so";
-}
+std::filesystem::path SumoModule() { return OwnFolder().parent_path() / "lib/fogline/sumo.so"; }
 
 std::unique_ptr<Traffic> LoadSumo(const Scenario& scenario, const std::filesystem::path& module) {
   const SumoSection& sumo = scenario.lead.sumo;

@@ -12,8 +12,8 @@
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/fogline/lcm/java_program.h"
 #include "tools/fogline/verbs.h"
+#include "tools/spy/java_program.h"
 
 namespace fogline {
 namespace {
@@ -53,15 +53,15 @@ struct LogplayerArguments {
 int Logplayer(const LogplayerArguments& arguments) {
   const std::string url = cli::CheckedNetworkUrl(arguments.url);
   const log::EventLogReader log(arguments.log);  // throws if the file is not an event log
-  const fs::path java = RequireJava();
-  const fs::path lcm = FindJar(arguments.jars, "lcm.jar", "liblcm-java");
-  RequireScreen();
+  const fs::path java = spy::RequireJava();
+  const fs::path lcm = spy::FindJar(arguments.jars, "lcm.jar", "liblcm-java");
+  spy::RequireScreen();
   std::vector<std::string> command{
       java.string(), "-Djava.net.preferIPv4Stack=true", "-cp",
       lcm.string(),  "lcm.logging.LogPlayer",           "--lcm-url=" + url};
   if (arguments.paused) command.emplace_back("--paused");
   command.push_back(arguments.log.string());
-  BecomeJava(std::move(command));
+  spy::BecomeJava(std::move(command));
 }
 
 }  // namespace

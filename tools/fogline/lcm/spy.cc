@@ -12,12 +12,13 @@
 #include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
+#include "common/process/programs.h"
 #include "common/text.h"
 #include "services/runtime/discovery/beacon.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/fogline/lcm/java_program.h"
 #include "tools/fogline/verbs.h"
+#include "tools/spy/java_program.h"
 #include "tools/spy/spy_parts.h"
 #include "tools/watch/traffic_statistics.h"
 
@@ -59,8 +60,8 @@ struct SpyArguments {
 
 /// The jar of the message types. @throws InputError; std::runtime_error that says how to build it
 fs::path TypesOf(const SpyArguments& arguments) {
-  if (!arguments.types.empty()) return Named(arguments.types, "--types");
-  const auto programs = fs::read_symlink("/proc/self/exe").parent_path();
+  if (!arguments.types.empty()) return spy::Named(arguments.types, "--types");
+  const fs::path programs = OwnFolder();
   const fs::path types = spy::TypesJar(programs);
   if (!types.empty()) return types;
   throw std::runtime_error(fmt::format(
@@ -72,11 +73,11 @@ fs::path TypesOf(const SpyArguments& arguments) {
 /// The command line of lcm-spy without its network. @throws InputError, std::runtime_error if
 /// lcm-spy cannot run
 std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
-  const fs::path java = RequireJava();
-  const fs::path lcm = FindJar(arguments.jars, "lcm.jar", "liblcm-java");
-  const fs::path charts = FindJar(arguments.jars, "jchart2d.jar", "libjchart2d-java");
+  const fs::path java = spy::RequireJava();
+  const fs::path lcm = spy::FindJar(arguments.jars, "lcm.jar", "liblcm-java");
+  const fs::path charts = spy::FindJar(arguments.jars, "jchart2d.jar", "libjchart2d-java");
   const fs::path types = TypesOf(arguments);
-  RequireScreen();
+  spy::RequireScreen();
   return {java.string(), "-Djava.net.preferIPv4Stack=true", "-cp",
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
 }
@@ -128,7 +129,7 @@ int Spy(const SpyArguments& arguments) {
     url = FindNetwork(arguments);
   }
   command.push_back("--lcm-url=" + url);
-  BecomeJava(std::move(command));
+  spy::BecomeJava(std::move(command));
 }
 
 }  // namespace

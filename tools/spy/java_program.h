@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fogline {
+namespace fogline::spy {
 
 /// Returns `file`, which the command line names with `option`.
 /// @throws InputError if the file cannot be read
@@ -31,4 +31,4 @@ std::filesystem::path FindJar(const std::filesystem::path& jars, const std::stri
 /// @throws std::runtime_error if the program cannot be started
 [[noreturn]] void BecomeJava(std::vector<std::string> command);
 
-}  // namespace fogline
+}  // namespace fogline::spy

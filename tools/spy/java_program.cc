@@ -1,4 +1,4 @@
-#include "tools/fogline/lcm/java_program.h"
+#include "tools/spy/java_program.h"
 
 #include <unistd.h>
 
@@ -10,17 +10,18 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/process/programs.h"
 #include "common/text.h"
 #include "tools/spy/spy_parts.h"
 
-namespace fogline {
+namespace fogline::spy {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// Lets the Java program receive traffic that stays on this machine.
 void PreloadHearLoopback() {
-  const fs::path library = spy::HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
+  const fs::path library = HearLoopback(OwnFolder());
   if (library.empty()) return;  // the program still receives traffic over other interfaces
   std::string preload = library.string();
   if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
@@ -36,9 +37,9 @@ const fs::path& Named(const fs::path& file, std::string_view option) {
 }
 
 fs::path RequireJava() {
-  fs::path java = spy::JavaProgram();
+  fs::path java = JavaProgram();
   if (java.empty()) throw std::runtime_error("there is no java: apt-get install default-jre");
-  if (!spy::OpensWindows(java)) {
+  if (!OpensWindows(java)) {
     throw std::runtime_error(
         fmt::format("{} cannot open windows (default-jre-headless?): apt-get install default-jre",
                     PathText(java)));
@@ -48,14 +49,14 @@ fs::path RequireJava() {
 
 void RequireScreen() {
   const char* display = std::getenv("DISPLAY");
-  if (const std::string why = spy::WhyNoScreen(display == nullptr ? "" : display); !why.empty()) {
+  if (const std::string why = WhyNoScreen(display == nullptr ? "" : display); !why.empty()) {
     throw std::runtime_error("no screen: " + why);
   }
 }
 
 fs::path FindJar(const fs::path& jars, const std::string& name, const char* package) {
   if (!jars.empty()) return Named(jars / name, "--jars");
-  fs::path jar = spy::InstalledJar(name);
+  fs::path jar = InstalledJar(name);
   if (!jar.empty()) return jar;
   throw std::runtime_error(
       fmt::format("there is no /usr/share/java/{}: apt-get install {}", name, package));
@@ -71,4 +72,4 @@ void BecomeJava(std::vector<std::string> command) {
       fmt::format("{} cannot be started: {}", command.front(), std::strerror(errno)));
 }
 
-}  // namespace fogline
+}  // namespace fogline::spy

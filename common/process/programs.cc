@@ -1,0 +1,27 @@
+#include "common/process/programs.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace fogline {
+
+std::filesystem::path OwnFolder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+bool IsExecutable(const std::filesystem::path& file) { return access(file.c_str(), X_OK) == 0; }
+
+std::filesystem::path FindProgram(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    // An empty folder is the folder of the process.
+    std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / name;
+    if (IsExecutable(program)) return program;
+  }
+  return {};
+}
+
+}  // namespace fogline
