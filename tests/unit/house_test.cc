@@ -31,6 +31,7 @@ struct Room {
   std::string folder;  // with the subfolders that are not rooms of their own; see kAlone
   std::string space;   // the namespace of its types is fogline::SPACE; "": fogline
   std::string why;     // reason for the position of this room in the order
+  bool of_role = false;
 };
 
 /// Stands for every folder services/NAME that has NAME_main.cc, except services/recorder.
@@ -46,7 +47,7 @@ std::vector<Room> WithRoles(std::vector<Room> rooms) {
   names.erase("recorder");
   auto place = rooms.erase(std::ranges::find(rooms, kRoleFolder, &Room::folder));
   for (const std::string& name : names) {
-    place = rooms.insert(place, {"services/" + name, name, "a role"}) + 1;
+    place = rooms.insert(place, {"services/" + name, name, "a role", true}) + 1;
   }
   return rooms;
 }
@@ -72,7 +73,7 @@ const std::vector<Room> kRooms = WithRoles({
     {"services/decision/take_over", "take_over", "the request to a person, and its end"},
     {"services/models/traffic", "models", "cars that another simulator moves"},
     {"services/models/sumo", "sumo", "this simulator, as a module that is loaded on demand"},
-    {kRoleFolder, "", "the folders of roles, in the order of their names: a car may have an ACC"},
+    {kRoleFolder, "", "the folders of roles, which use no other role; see kRoleOfRole"},
     {"services/runtime/wire", "runtime", "the bytes of messages"},
     {"services/metrics", "metrics", "judges what the messages of a run say"},
     {"services/closed_loop", "closed_loop", "all roles in one process, and their metrics"},
@@ -88,6 +89,7 @@ const std::vector<Room> kRooms = WithRoles({
     {"services/recorder", "recorder", "the role that writes it"},
     {"tools/asio", "", "Boost.Asio, compiled once; has no header of its own"},
     {"tools/stats", "stats", "numbers about many runs"},
+    {"tools/compare", "compare", "a run beside recorded driving"},
     {"tools/sweep", "sweep", "many runs"},
     {"tools/report", "report", "pages about them"},
     {"tools/export", "exports", "logs for other programs"},
@@ -119,6 +121,14 @@ const std::vector<Room> kRooms = WithRoles({
 /// The room of services has only the files directly in this folder. A new subfolder needs a line of
 /// its own in kRooms.
 constexpr std::string_view kAlone = "services";
+
+/// The only role that uses another role: a following car may have the host's ACC.
+constexpr std::array<std::string_view, 2> kRoleOfRole{"services/follower", "services/acc"};
+
+bool IsOtherRole(const Room& room, const Room& included) {
+  return room.of_role && included.of_role && room.folder != included.folder &&
+         (room.folder != kRoleOfRole[0] || included.folder != kRoleOfRole[1]);
+}
 
 /// The table of all measures of conflict. This file may include all measures; no measure includes
 /// the header of this table.
@@ -167,7 +177,8 @@ std::vector<std::string> ForbiddenIncludes(const std::filesystem::path& file,
   std::vector<std::string> forbidden;
   for (std::sregex_iterator at(text.begin(), text.end(), include), end; at != end; ++at) {
     const std::string included = (*at)[1];
-    if (RoomOf(included).value_or(kRooms.size()) <= *room) continue;
+    const std::size_t place = RoomOf(included).value_or(kRooms.size());
+    if (place <= *room && !IsOtherRole(kRooms[*room], kRooms[place])) continue;
     forbidden.push_back(file.string() + " includes " + included);
   }
   return forbidden;
@@ -194,6 +205,16 @@ TEST(HouseTest, FindsAForbiddenInclude) {
               ElementsAre("common/clock.h includes attic/clock.h"));
   EXPECT_THAT(ForbiddenIncludes("common/text.cc", "#include \"common/process/console.h\"\n"),
               ElementsAre("common/text.cc includes common/process/console.h"));
+}
+
+TEST(HouseTest, ARoleUsesNoOtherRoleExceptThatAFollowingCarMayHaveAnAcc) {
+  const std::string acc = "#include \"services/acc/acc_controller.h\"\n";
+  EXPECT_THAT(ForbiddenIncludes("services/follower/acc_driver.h", acc), IsEmpty());
+  EXPECT_THAT(ForbiddenIncludes("services/acc/acc.h", acc), IsEmpty());
+  for (const char* file : {"services/driver/driver.h", "services/world/world.h"}) {
+    EXPECT_THAT(ForbiddenIncludes(file, acc),
+                ElementsAre(std::string(file) + " includes services/acc/acc_controller.h"));
+  }
 }
 
 TEST(HouseTest, FindsAFileThatIsInNoRoom) {
