@@ -18,9 +18,8 @@
 #include "common/clock.h"
 #include "common/process/console.h"
 #include "scenario/io/loader.h"
-#include "services/log/log_of_run.h"
 #include "services/runtime/wire/build_id.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline::cli {
@@ -75,17 +74,6 @@ class ScenarioArguments {
   std::vector<std::string> overrides_;
   std::string seed_;
 };
-
-/// Prepares a log file for writing. The function refuses a log that another run is writing. It
-/// refuses a non-empty file if `force` is false, and a file that is not an event log even if
-/// `force` is true. It also refuses a folder that RequireFolderOf() refuses. If a killed run has
-/// left an older log of this name, the function restores the older log and says so on stderr.
-/// @throws InputError
-log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
-
-/// Makes the log "logs/STEM-N.lcm" with the first free number N, from 1 on. STEM is the scenario
-/// file's name without its extension.
-log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each log. If a log cannot be read, the error is printed on stderr, and the
 /// work continues with the other logs. @return whether all logs could be read
@@ -147,20 +135,5 @@ class NetworkArguments {
  private:
   std::string url_;
 };
-
-/// The measures of a run as a JSON object {"name": value, ...}, to be put into a larger JSON text.
-/// With more than one following car, "followers" is the list of their measures.
-std::string MetricsJson(const runner::ExperimentResult& result);
-
-/// The measures of a run as lines "name  value unit". If there is more than one following car, a
-/// table of their measures follows.
-std::string MetricsText(const runner::ExperimentResult& result);
-
-/// The figures of a run in real time, and its fallbacks, as JSON and as text.
-nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);
-std::string RealtimeText(const log::RealtimeFigures& figures);
-/// A line for each list of roles that is not empty, such as "  with real-time priority: world,
-/// radar".
-std::string PriorityText(const log::RealtimePriority& priority);
 
 }  // namespace fogline::cli

@@ -7,7 +7,7 @@
 
 #include "services/metrics/fog_effect.h"
 #include "services/metrics/safety_improvement.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::cli {
 

@@ -10,6 +10,7 @@
 #include "common/text.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/arguments.h"
+#include "tools/cli/measures/run_text.h"
 #include "tools/cli/measures/take_over_text.h"
 #include "tools/report/metric_text.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 /// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
 /// @throws std::runtime_error if the log of a run in real time lacks published messages
-int Ended(const runner::ExperimentResult& result, std::string_view verb) {
+int Ended(const runner::RunResult& result, std::string_view verb) {
   if (result.realtime && result.realtime->unlogged_messages > 0) {
     throw std::runtime_error(fmt::format(
         "the log is not complete: it lacks at least {} messages that were published; the recorder "
@@ -66,7 +67,7 @@ std::string VerificationText(const replay::Verification& verification) {
 
 /// Lines about deviations of a run and about parts that were not checked; "" if there are none.
 std::string RemarksText(const RunOutcome& outcome) {
-  const runner::ExperimentResult& result = outcome.result;
+  const runner::RunResult& result = outcome.result;
   std::string text;
   for (const runtime::OtherBuild& other : result.other_builds) {
     text += fmt::format("another build: {}\n", other.Text());
@@ -81,7 +82,7 @@ std::string RemarksText(const RunOutcome& outcome) {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
-  const runner::ExperimentResult& result = outcome.result;
+  const runner::RunResult& result = outcome.result;
   nlohmann::ordered_json json;
   json["scenario"] = outcome.file.string();
   json["seed"] = result.seed;
@@ -130,7 +131,7 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
 }
 
 std::string ToText(const RunOutcome& outcome) {
-  const runner::ExperimentResult& result = outcome.result;
+  const runner::RunResult& result = outcome.result;
   std::string text =
       fmt::format("{}: {}{} steps", PathText(outcome.file), result.steps,
                   result.steps < outcome.steps ? fmt::format(" of {}", outcome.steps) : "");

@@ -9,14 +9,14 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::cli {
 
 struct RunOutcome {
   std::filesystem::path file;  // the file with the scenario
   std::int64_t steps = 0;      // steps of the scenario; a collision may end a run earlier
-  runner::ExperimentResult result;
+  runner::RunResult result;
   std::optional<std::int64_t> resumed;  // steps that the log already had, for --resume
   bool computed = true;                 // whether this process computed any steps
 };

@@ -33,7 +33,7 @@ class TableRows {
 
   /// @param seed index of the seed in the range of seeds
   /// @param row 0 for the run without traded control, 1 for the first threshold, and so on
-  void Add(std::int64_t seed, std::size_t row, runner::ExperimentResult result) {
+  void Add(std::int64_t seed, std::size_t row, runner::RunResult result) {
     runs_[seed].emplace(row, std::move(result));
     while (!runs_.empty() && runs_.begin()->first == next_ &&
            runs_.begin()->second.size() == rows_.size() + 1) {
@@ -46,11 +46,11 @@ class TableRows {
   std::vector<sweep::ThresholdRow> Take() { return std::move(rows_); }
 
  private:
-  void AddSeed(const std::map<std::size_t, runner::ExperimentResult>& runs) {
-    const runner::ExperimentResult& baseline = runs.at(0);
+  void AddSeed(const std::map<std::size_t, runner::RunResult>& runs) {
+    const runner::RunResult& baseline = runs.at(0);
     const metrics::FogEffect without = metrics::FogEffectOf(baseline.measures);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
-      const runner::ExperimentResult& result = runs.at(row + 1);
+      const runner::RunResult& result = runs.at(row + 1);
       rows_[row].Add(result.measures,
                      metrics::MeasurePair(baseline.samples, result.samples, scenario_), without);
     }
@@ -58,7 +58,7 @@ class TableRows {
 
   const Scenario& scenario_;
   std::vector<sweep::ThresholdRow> rows_;
-  std::map<std::int64_t, std::map<std::size_t, runner::ExperimentResult>> runs_;  // by seed and row
+  std::map<std::int64_t, std::map<std::size_t, runner::RunResult>> runs_;  // by seed and row
   std::int64_t next_ = 0;
 };
 
@@ -90,12 +90,11 @@ void RefuseForeignFiles(const TableRuns& runs, std::span<const double> threshold
 }
 
 /// @param name kNone, or NameOf() the threshold
-runner::ExperimentResult RunOne(const TableRuns& runs, const Scenario& scenario,
-                                std::string_view name) {
-  runner::ExperimentOptions options = runs.options;
+runner::RunResult RunOne(const TableRuns& runs, const Scenario& scenario, std::string_view name) {
+  runner::RunOptions options = runs.options;
   if (!runs.logs.empty()) options.log = LogOf(runs, scenario.seed, name);
   const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
-  runner::ExperimentResult result = runner::RunExperiment(scenario, options);
+  runner::RunResult result = runner::RunScenario(scenario, options);
   if (result.verification && !result.verification->Holds()) {
     throw CheckFailed(
         fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
@@ -133,9 +132,8 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenari
     Scenario its = scenario;
     its.seed = seeds.first + seed;
     if (row > 0) its.arbitrator.threshold = thresholds[row - 1];
-    runner::ExperimentResult result = row == 0
-                                          ? RunOne(runs, WithoutTradedControl(its), kNone)
-                                          : RunOne(runs, its, NameOf(its.arbitrator.threshold));
+    runner::RunResult result = row == 0 ? RunOne(runs, WithoutTradedControl(its), kNone)
+                                        : RunOne(runs, its, NameOf(its.arbitrator.threshold));
     const std::lock_guard lock(mutex);
     rows.Add(seed, row, std::move(result));
     progress.Show(++done);

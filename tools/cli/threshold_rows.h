@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 
@@ -22,15 +22,15 @@ std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
 
 /// How the runs of a table are made.
 struct TableRuns {
-  runner::ExperimentOptions options;  // of each run, without its log
-  std::filesystem::path logs;         // folder for a log of each run; empty: no logs
-  std::string name;                   // beginning of the name of each log
-  int jobs = 1;                       // number of runs at the same time
+  runner::RunOptions options;  // of each run, without its log
+  std::filesystem::path logs;  // folder for a log of each run; empty: no logs
+  std::string name;            // beginning of the name of each log
+  int jobs = 1;                // number of runs at the same time
 };
 
-/// Makes each run of a table separately, by RunExperiment(). Every number of jobs gives the same
+/// Makes each run of a table separately, by RunScenario(). Every number of jobs gives the same
 /// rows, bit for bit. Call WatchInterrupts() before it.
-/// @throws CheckFailed if a run fails its verification; all exceptions of RunExperiment()
+/// @throws CheckFailed if a run fails its verification; all exceptions of RunScenario()
 std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenario& scenario,
                                             std::span<const double> thresholds,
                                             const sweep::SeedRange& seeds);

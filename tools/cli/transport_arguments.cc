@@ -39,7 +39,7 @@ std::string RefuseRecorder(const std::string& role) {
 }
 
 /// The transport of a run and its source, for an error message.
-std::string Said(const runner::ExperimentOptions& options) {
+std::string Said(const runner::RunOptions& options) {
   return options.transport_source + " " + options.transport;
 }
 
@@ -111,7 +111,7 @@ std::pair<std::string, std::string> TransportArguments::Chosen(const hosts::RunP
   return {usual, kTransportOption};
 }
 
-void TransportArguments::Apply(runner::ExperimentOptions& options) const {
+void TransportArguments::Apply(runner::RunOptions& options) const {
   options.hosts = hosts::MakePlan(hosts_);
   std::tie(options.transport, options.transport_source) = Chosen(options.hosts);
   const std::string& source = options.transport_source;
@@ -150,7 +150,7 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   }
 }
 
-void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) const {
+void TransportArguments::CheckHosts(const runner::RunOptions& options) const {
   const hosts::RunPlan& plan = options.hosts;
   if (plan.empty()) return;
   const auto [role, place] = *plan.places.begin();
@@ -180,14 +180,14 @@ bool IsOneProcess(const std::string& transport) {
   return transport == "direct" || transport == "memq" || runtime::IsInMemory(transport);
 }
 
-void RequireProcesses(const runner::ExperimentOptions& options, std::string_view what) {
+void RequireProcesses(const runner::RunOptions& options, std::string_view what) {
   if (!IsOneProcess(options.transport)) return;
   throw InputError(
       fmt::format("error: {}: all roles are in one process; {} needs a process for each role",
                   Said(options), what));
 }
 
-void RunInRealtime(runner::ExperimentOptions& options, double speed) {
+void RunInRealtime(runner::RunOptions& options, double speed) {
   RequireProcesses(options, "a run in real time");
   if (options.pace != 0) {
     throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");

@@ -10,7 +10,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "tools/hosts/run_plan.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::cli {
 
@@ -25,13 +25,13 @@ class TransportArguments {
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
   /// @throws InputError for a contradiction between these options
-  void Apply(runner::ExperimentOptions& options) const;
+  void Apply(runner::RunOptions& options) const;
 
  private:
   /// The transport of a run, and the option or variable that has chosen it.
   std::pair<std::string, std::string> Chosen(const hosts::RunPlan& plan) const;
   /// @throws InputError if roles on other machines cannot join the run
-  void CheckHosts(const runner::ExperimentOptions& options) const;
+  void CheckHosts(const runner::RunOptions& options) const;
 
   std::string transport_;
   CLI::Option* said_;  // --transport
@@ -50,12 +50,12 @@ bool IsOneProcess(const std::string& transport);
 
 /// @param what the feature that needs a process for each role, such as "a live replay"
 /// @throws InputError if all roles of a run with these options are in one process
-void RequireProcesses(const runner::ExperimentOptions& options, std::string_view what);
+void RequireProcesses(const runner::RunOptions& options, std::string_view what);
 
 /// Sets the options for a run in real time.
 /// @param speed simulated seconds per second
 /// @throws InputError if the other options do not allow real time
-void RunInRealtime(runner::ExperimentOptions& options, double speed);
+void RunInRealtime(runner::RunOptions& options, double speed);
 
 /// @throws InputError if the steps are too short for real time at this speed
 void CheckPeriod(const Scenario& scenario, double speed);

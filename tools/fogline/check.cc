@@ -14,7 +14,7 @@
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"
 #include "tools/hosts/lab_file.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline {
 namespace {

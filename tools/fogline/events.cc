@@ -18,6 +18,7 @@
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/logs/log_reading.h"
+#include "tools/cli/measures/run_text.h"
 #include "tools/cli/measures/take_over_text.h"
 #include "tools/fogline/verbs.h"
 

@@ -201,7 +201,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
 }
 
 /// The measures of a run, and the latency of a person's inputs.
-std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& result) {
+std::vector<report::ReportMetric> MetricsOf(const runner::RunResult& result) {
   std::vector<report::ReportMetric> out = MetricsOf(result.measures, result.lack);
   if (!result.input_latency) return out;
   log::VisitLatency(

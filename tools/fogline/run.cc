@@ -20,15 +20,16 @@
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/new_log.h"
 #include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 #include "tools/processes/run_viewer.h"
 #include "tools/replay/role_check.h"
-#include "tools/runner/experiment.h"
 #include "tools/runner/kept_log.h"
 #include "tools/runner/log_keeper.h"
 #include "tools/runner/resumed_log.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline {
 namespace {
@@ -113,7 +114,7 @@ struct RunArguments {
 
   cli::ScenarioArguments scenario;
   cli::TransportArguments transport;
-  runner::ExperimentOptions options;
+  runner::RunOptions options;
   std::filesystem::path resume;
   CLI::Option* restarts = nullptr;
   double speed = 1.0;
@@ -126,7 +127,7 @@ struct RunArguments {
 
 /// Applies the options that a new run and a resumed run share. @throws InputError
 void ApplyOptions(RunArguments& arguments) {
-  runner::ExperimentOptions& options = arguments.options;
+  runner::RunOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
   if (arguments.view && cli::IsOneProcess(options.transport)) {
@@ -158,7 +159,7 @@ int Print(const RunArguments& arguments, const cli::RunOutcome& outcome) {
 }
 
 int RunNew(RunArguments& arguments) {
-  runner::ExperimentOptions& options = arguments.options;
+  runner::RunOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
   if (scenario.person.drives && !options.realtime) {
     throw InputError(
@@ -179,7 +180,7 @@ int RunNew(RunArguments& arguments) {
   WatchInterrupts();
   return Print(arguments, {.file = arguments.scenario.file(),
                            .steps = scenario.steps,
-                           .result = runner::RunExperiment(scenario, options),
+                           .result = runner::RunScenario(scenario, options),
                            .resumed = std::nullopt});
 }
 
@@ -198,7 +199,7 @@ runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
 /// log with the whole run but without a seal is verified. The log is sealed if the verification
 /// succeeds. --no-verify omits verification and seal.
 int Resume(RunArguments& arguments) {
-  runner::ExperimentOptions& options = arguments.options;
+  runner::RunOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
   const runner::ResumedLog log(arguments.resume, key ? &*key : nullptr);
   options.log = arguments.resume;
@@ -211,7 +212,7 @@ int Resume(RunArguments& arguments) {
                           .resumed = log.resumption().remains.steps,
                           .computed = !log.complete()};
   if (outcome.computed) {
-    outcome.result = runner::RunExperiment(log.scenario(), options);
+    outcome.result = runner::RunScenario(log.scenario(), options);
     return Print(arguments, outcome);
   }
   if (options.announce) Notice(PathText(options.log) + ": the run is complete");
@@ -252,7 +253,7 @@ int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
 
 /// Makes the run, and shows it in a browser. After the run, the browser shows the log until Ctrl-C.
 int RunAndView(RunArguments& arguments) {
-  runner::ExperimentOptions& options = arguments.options;
+  runner::RunOptions& options = arguments.options;
   processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));
   options.on_network = [&viewer](std::int64_t, const std::string& url) { viewer.ShowNetwork(url); };
   const int code = RunShown(arguments, viewer);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.h"
+#include "common/file_lock.h"
 #include "common/interrupt.h"
 #include "common/json.h"
 #include "common/process/console.h"
@@ -65,8 +66,8 @@ struct TableArguments {
 };
 
 /// @throws InputError
-runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
-  runner::ExperimentOptions options;
+runner::RunOptions OptionsOf(const TableArguments& arguments) {
+  runner::RunOptions options;
   options.samples = true;
   options.progress = false;  // there is one progress bar for all runs
   arguments.transport.Apply(options);
@@ -87,7 +88,7 @@ runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
 }
 
 /// Tells the user to start the roles that the runs wait for.
-void AskForRoles(const runner::ExperimentOptions& options, std::int64_t runs) {
+void AskForRoles(const runner::RunOptions& options, std::int64_t runs) {
   const processes::ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
     Notice(fmt::format("each of {} runs waits for the {} ({}); start it for each run with: {}",
@@ -248,7 +249,7 @@ Scenario ScenarioOf(const TableArguments& arguments) {
 
 int RunTable(const TableArguments& arguments) {
   const Scenario scenario = ScenarioOf(arguments);
-  const runner::ExperimentOptions options = OptionsOf(arguments);
+  const runner::RunOptions options = OptionsOf(arguments);
   const sweep::SeedRange seeds = arguments.seeds.empty()
                                      ? sweep::SeedRange{scenario.seed, scenario.seed}
                                      : cli::ReadSeeds(arguments.seeds);

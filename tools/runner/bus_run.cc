@@ -27,6 +27,7 @@
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/realtime/fallback_log.h"
 #include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tools/hosts/host_group.h"
 #include "tools/processes/child.h"
 #include "tools/processes/external_roles.h"
@@ -71,8 +72,7 @@ std::int64_t NewerThanEveryRunner() {
 }
 
 runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
-                                                      const ExperimentOptions& options,
-                                                      bool in_memory) {
+                                                      const RunOptions& options, bool in_memory) {
   // The duration of a step at this pace. The stall limit is longer by this time, because a slow
   // pace is not a stall.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
@@ -97,7 +97,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
 /// Calls options.on_logged_step if the log has a step. The recorder's STATUS names only steps that
 /// the recorder has handed to the operating system. A recorder that has failed may name the step
 /// that it could not write.
-void TellLoggedStep(const runtime::RunCoordinator& coordinator, const ExperimentOptions& options) {
+void TellLoggedStep(const runtime::RunCoordinator& coordinator, const RunOptions& options) {
   const auto& recorder = coordinator.member(Role::kRecorder).status;
   if (recorder && recorder->state != status_t::FAILED && recorder->header.step >= 0) {
     options.on_logged_step();
@@ -107,7 +107,7 @@ void TellLoggedStep(const runtime::RunCoordinator& coordinator, const Experiment
 // ---- memq --------------------------------------------------------------------------------------
 
 void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::int64_t run_id,
-                 const Scenario& scenario, const ExperimentOptions& options,
+                 const Scenario& scenario, const RunOptions& options,
                  const std::filesystem::path& log) {
   std::vector<std::unique_ptr<runtime::Work>> roles;
   [&]<class... A>(std::type_identity<std::tuple<A...>>) {
@@ -152,8 +152,8 @@ struct ProcessNews {
 
 ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
                            processes::RelayProcess* relay, const hosts::HostGroup* hosts,
-                           std::int64_t run_id, const Scenario& scenario,
-                           const ExperimentOptions& options, const std::filesystem::path& log) {
+                           std::int64_t run_id, const Scenario& scenario, const RunOptions& options,
+                           const std::filesystem::path& log) {
   Progress progress("step", scenario.steps, options.progress);
   runtime::Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
   processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
@@ -259,13 +259,13 @@ std::int64_t DrawRunId() {
   return static_cast<std::int64_t>(id >> 2) + 1;  // positive, for easier reading
 }
 
-void CheckNetwork(const ExperimentOptions& options) {
+void CheckNetwork(const RunOptions& options) {
   if (options.transport == "tcpq") return;
   const std::string url = UrlOf(options.transport, !options.hosts.empty());
   runtime::OpenBus(url, options.traffic, SenderOn(url));
 }
 
-BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper) {
   const auto hosts = hosts::Connect(options.hosts);
   std::optional<processes::RelayProcess> relay;

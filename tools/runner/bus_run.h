@@ -8,8 +8,8 @@
 #include "services/runtime/coordination/foreign_peers.h"
 #include "services/runtime/coordination/send_trouble.h"
 #include "services/runtime/wire/refusals.h"
-#include "tools/runner/experiment.h"
 #include "tools/runner/log_keeper.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 
@@ -30,14 +30,14 @@ struct BusRun {
 /// A run id that no other run has.
 std::int64_t DrawRunId();
 /// The id of a new run: options.run_id if it is set, otherwise a drawn id.
-inline std::int64_t RunIdOf(const ExperimentOptions& options) {
+inline std::int64_t RunIdOf(const RunOptions& options) {
   return options.run_id ? *options.run_id : DrawRunId();
 }
 
 /// Runs a scenario to its end and leaves the log of the run.
 /// @param keeper seals the log of a run that ends early
-/// @throws InputError, Interrupted, std::runtime_error like RunExperiment()
-BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
+/// @throws InputError, Interrupted, std::runtime_error like RunScenario()
+BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper);
 
 }  // namespace fogline::runner

@@ -13,8 +13,7 @@
 
 namespace fogline::runner {
 
-DirectLog::DirectLog(const ExperimentOptions& options, std::int64_t run_id,
-                     const Scenario& scenario)
+DirectLog::DirectLog(const RunOptions& options, std::int64_t run_id, const Scenario& scenario)
     : file_(options.log), key_(runtime::KeyOf(options.traffic)) {
   run_.run_id = run_id;
   run_.scenario = scenario;
@@ -72,7 +71,7 @@ void DirectLog::Flush() {
   if (log_) log_->Flush();
 }
 
-void DirectLog::End(const ExperimentResult& result) {
+void DirectLog::End(const RunResult& result) {
   if (!log_) return;  // the log already has all messages
   run_.steps = result.steps;
   run_.digest = result.digest;

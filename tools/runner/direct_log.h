@@ -11,8 +11,8 @@
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/other_build.h"
-#include "tools/runner/experiment.h"
 #include "tools/runner/log_keeper.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 
@@ -21,7 +21,7 @@ namespace fogline::runner {
 class DirectLog {
  public:
   /// @throws InputError if the file cannot be written
-  DirectLog(const ExperimentOptions& options, std::int64_t run_id, const Scenario& scenario);
+  DirectLog(const RunOptions& options, std::int64_t run_id, const Scenario& scenario);
 
   /// Adds the next message, in the order of the log.
   /// @throws InputError if the log has a different message; std::runtime_error if the disk is full
@@ -30,7 +30,7 @@ class DirectLog {
   /// Hands all data to the operating system. @throws std::runtime_error
   void Flush();
   /// Seals the log of a complete run. @throws std::runtime_error
-  void End(const ExperimentResult& result);
+  void End(const RunResult& result);
   /// Seals the log of an interrupted run with the steps that it has.
   void CutOff();
 

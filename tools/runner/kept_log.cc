@@ -33,7 +33,7 @@ std::string InSeconds(Duration time) {
 
 }  // namespace
 
-std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
+std::string KeptLog(std::int64_t run_id, const RunOptions& options) {
   if (options.log.empty()) return "";
   if (!HasStepsOf(run_id, options.log)) return "no log was written";
   std::string text = fmt::format("the log so far: {}", PathText(options.log));
@@ -41,9 +41,9 @@ std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
   return text;
 }
 
-std::string CommandToGoOn(const ExperimentOptions& options) {
+std::string CommandToGoOn(const RunOptions& options) {
   if (options.log.empty() || options.realtime) return "";
-  const ExperimentOptions unsaid;
+  const RunOptions unsaid;
   std::string command = "fogline run --resume " + ShellWord(options.log.string());
   if (runtime::IsLcmUrl(options.transport)) {
     command += " --lcm-url " + ShellWord(options.transport);

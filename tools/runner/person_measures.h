@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <set>
 
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 

@@ -6,7 +6,7 @@
 
 #include "common/file_lock.h"
 #include "scenario/sections/scenario.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 

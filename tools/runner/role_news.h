@@ -11,7 +11,7 @@
 #include "common/clock.h"
 #include "common/process/progress.h"
 #include "services/runtime/coordination/run_coordinator.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 

@@ -17,7 +17,7 @@
 #include "services/runtime/transport/traffic_options.h"
 #include "tools/hosts/host_group.h"
 #include "tools/processes/process_group.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
 

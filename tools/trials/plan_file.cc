@@ -20,7 +20,7 @@
 #include "scenario/io/reader.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/trial.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::trials {
 namespace {

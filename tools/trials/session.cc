@@ -100,7 +100,7 @@ class Session {
     log::LogOfRun log(path);
     std::optional<Speaker> speaker;
     std::optional<drive::Seat> seat;
-    runner::ExperimentOptions run = options_.run;
+    runner::RunOptions run = options_.run;
     run.log = log.path();
     run.realtime = true;
     run.pace = options_.speed;
@@ -117,7 +117,7 @@ class Session {
       desk_.RunGoesOn();
     };
     try {
-      runner::RunExperiment(scenario, run);
+      runner::RunScenario(scenario, run);
     } catch (...) {
       desk_.RunEnded();
       throw;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tools/drive/pedal_source.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 #include "tools/trials/desk/desk.h"
 #include "tools/trials/results.h"
 
@@ -25,7 +25,7 @@ struct SessionOptions {
   /// Makes the pedals of the person who drives; called for each run. Empty: this program has no
   /// seat.
   std::function<std::unique_ptr<drive::PedalSource>(const PersonSection&)> pedals;
-  runner::ExperimentOptions run;  // transport and traffic of each run
+  runner::RunOptions run;  // transport and traffic of each run
 };
 
 /// The work that a session has done.

@@ -11,12 +11,13 @@
 
 #include <fmt/core.h>
 
+#include "common/csv.h"
 #include "common/errors.h"
 #include "common/text.h"
 #include "services/log/input_latency.h"
 #include "services/metrics/gaps/gap_rules.h"
 #include "services/metrics/take_over/take_over_measures.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 #include "tools/trials/questionnaires.h"
 
 namespace fogline::trials {
@@ -27,14 +28,6 @@ constexpr std::string_view kTrialColumns =
     "log";
 constexpr std::string_view kValueColumns =
     "participant,trial,practice,condition,kind,item,value,unit,time_s";
-
-/// A cell of a table, as in RFC 4180.
-std::string Cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string NumberCell(std::int64_t value) { return std::to_string(value); }
 std::string NumberCell(const std::optional<double>& value) {
@@ -198,17 +191,18 @@ class TableMaker {
     const std::string head =
         fmt::format("{},{},{},{}", record.trial.participant, record.trial.number,
                     record.trial.practice ? 1 : 0, ConditionOf(plan_.plan, record.trial).name);
-    tables_.trials += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{}{}\n", head, order, seed, record.attempts,
-        has_run ? NumberText(story.speed) : "", NameOf(story.state), complete,
-        HasBegin(story) ? UtcText(story.facts.front().unix_us) : "", markers.size(),
-        Cell(record.log.lexically_relative(results_.folder()).string()), Cells(answers, measures));
+    tables_.trials +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}{}\n", head, order, seed, record.attempts,
+                    has_run ? NumberText(story.speed) : "", NameOf(story.state), complete,
+                    HasBegin(story) ? UtcText(story.facts.front().unix_us) : "", markers.size(),
+                    CsvCell(record.log.lexically_relative(results_.folder()).string()),
+                    Cells(answers, measures));
     for (const std::vector<Value>* values :
          std::initializer_list<const std::vector<Value>*>{&answers, &measures, &markers}) {
       for (const Value& value : *values) {
         if (value.value.empty() && value.kind != "marker") continue;
         tables_.values += fmt::format("{},{},{},{},{},{}\n", head, value.kind, value.item,
-                                      Cell(value.value), Cell(value.unit), value.time_s);
+                                      CsvCell(value.value), CsvCell(value.unit), value.time_s);
       }
     }
   }
@@ -218,7 +212,7 @@ class TableMaker {
     std::string cells;
     for (const auto* values : {&answers, &measures}) {
       for (const Value& value : *values) {
-        cells += "," + Cell(value.value);
+        cells += "," + CsvCell(value.value);
       }
     }
     return cells;

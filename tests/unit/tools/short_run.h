@@ -9,7 +9,7 @@
 #include "scenario/io/loader.h"
 #include "services/log/run_log.h"
 #include "tests/support/command.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::test {
 
@@ -19,8 +19,8 @@ inline Scenario Paper(std::int64_t steps, std::vector<std::string> overrides = {
   return LoadScenario(SourceDirectory() / "scenario/paper.json", overrides);
 }
 
-inline runner::ExperimentOptions Direct(const std::filesystem::path& log) {
-  runner::ExperimentOptions options;
+inline runner::RunOptions Direct(const std::filesystem::path& log) {
+  runner::RunOptions options;
   options.transport = "direct";
   options.log = log;
   return options;

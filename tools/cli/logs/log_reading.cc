@@ -70,7 +70,7 @@ nlohmann::ordered_json DigestJson(const log::RunLog& run) {
   return run.digest;
 }
 
-std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result) {
+std::vector<std::string> UnknownMeasures(const runner::RunResult& result) {
   std::vector<std::string> names;
   metrics::VisitMetrics(result.measures, [&](std::string_view name, const auto& value,
                                              std::string_view, std::string_view) {
@@ -79,7 +79,7 @@ std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result)
   return names;
 }
 
-std::string UnknownMeasuresText(const runner::ExperimentResult& result) {
+std::string UnknownMeasuresText(const runner::RunResult& result) {
   if (result.lack.every[IndexOf<truth_t>()]) return "all measures";
   return fmt::format("{}", fmt::join(UnknownMeasures(result), ", "));
 }

@@ -11,7 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/log/run_log.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::cli {
 
@@ -46,9 +46,9 @@ nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 nlohmann::ordered_json DigestJson(const log::RunLog& run);
 
 /// The names of the measures of a run that are unknown because its log has gaps.
-std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result);
+std::vector<std::string> UnknownMeasures(const runner::RunResult& result);
 /// The same as text, such as "rhe_pct, transfers", or "all measures"; "" if all are known.
-std::string UnknownMeasuresText(const runner::ExperimentResult& result);
+std::string UnknownMeasuresText(const runner::RunResult& result);
 
 /// Names the unknown requests to take over of a run, and the unknown measures of requests, such as
 /// "the measures of take-overs"; "" if all requests and their measures are known, or if the run

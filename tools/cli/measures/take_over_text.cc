@@ -32,7 +32,7 @@ nlohmann::ordered_json TakeOverJson(const metrics::TakeOverMeasures& measures) {
   return json;
 }
 
-void AddTakeOvers(const runner::ExperimentResult& result, nlohmann::ordered_json& json) {
+void AddTakeOvers(const runner::RunResult& result, nlohmann::ordered_json& json) {
   for (const metrics::TakeOverMeasures& measures : result.take_overs) {
     json["take_overs"].push_back(TakeOverJson(measures));
   }
@@ -53,7 +53,7 @@ std::string TakeOverLine(const metrics::TakeOverMeasures& measures) {
   return line;
 }
 
-std::string TakeOversText(const runner::ExperimentResult& result) {
+std::string TakeOversText(const runner::RunResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.take_overs.size(); ++i) {
     const metrics::TakeOverMeasures& measures = result.take_overs[i];

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/metrics/take_over/take_over_measures.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::cli {
 
@@ -17,7 +17,7 @@ nlohmann::ordered_json TakeOverJson(const metrics::TakeOverMeasures& measures);
 
 /// Adds "take_overs" and "input_latency" to the JSON object of a run. The object does not change if
 /// the run has neither a request nor a person who drives.
-void AddTakeOvers(const runner::ExperimentResult& result, nlohmann::ordered_json& json);
+void AddTakeOvers(const runner::RunResult& result, nlohmann::ordered_json& json);
 
 /// The outcome of a request and the measures that have a value, without the time of the request:
 /// "taken over; reaction time 2.00 s; take-over time 2.10 s; ...".
@@ -26,6 +26,6 @@ std::string TakeOverLine(const metrics::TakeOverMeasures& measures);
 /// The measures of a run as lines: a line for each request, lines "name value unit" for its
 /// measures, and such lines for the latency of a person's inputs. "" if the run has neither a
 /// request nor a person who drives.
-std::string TakeOversText(const runner::ExperimentResult& result);
+std::string TakeOversText(const runner::RunResult& result);
 
 }  // namespace fogline::cli

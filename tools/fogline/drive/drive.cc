@@ -15,6 +15,7 @@
 #include "services/runtime/transport/tcpq_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/new_log.h"
 #include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/drive/evdev_device.h"
@@ -88,7 +89,7 @@ struct DriveArguments {
 
   cli::ScenarioArguments scenario;
   cli::TransportArguments transport;
-  runner::ExperimentOptions options;
+  runner::RunOptions options;
   drive::DeviceNames names;
   std::string device;
   std::string listen;
@@ -141,7 +142,7 @@ int Drive(DriveArguments& arguments) {
       runtime::tcpq::RequireFree(place, "--listen");
     }
   }
-  runner::ExperimentOptions& options = arguments.options;
+  runner::RunOptions& options = arguments.options;
   arguments.transport.Apply(options);
   cli::RunInRealtime(options, 1);
   options.announce = !arguments.quiet;
@@ -164,7 +165,7 @@ int Drive(DriveArguments& arguments) {
   };
   cli::RunOutcome outcome{.file = arguments.scenario.file(),
                           .steps = scenario.steps,
-                          .result = runner::RunExperiment(scenario, options),
+                          .result = runner::RunScenario(scenario, options),
                           .resumed = std::nullopt};
   seat.reset();            // restores the terminal
   if (page) page->Runs();  // prints a message if fogline-web has failed

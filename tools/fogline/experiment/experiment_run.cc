@@ -22,7 +22,7 @@
 #include "tools/drive/evdev_device.h"
 #include "tools/drive/terminal_keys.h"
 #include "tools/fogline/experiment/experiment_actions.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 #include "tools/trials/desk/page_desk.h"
 #include "tools/trials/desk/terminal_desk.h"
 #include "tools/trials/results.h"

@@ -19,10 +19,12 @@
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/logs/log_reading.h"
+#include "tools/cli/logs/new_log.h"
+#include "tools/cli/measures/run_text.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/replay/live/live_roles.h"
 #include "tools/replay/live/track_difference.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline {
 namespace {
@@ -118,7 +120,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
                    fmt::format("{}: a run in lockstep needs every message; use --realtime", gap));
   }
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
-  runner::ExperimentOptions options;
+  runner::RunOptions options;
   options.transport = transport_;
   cli::RequireProcesses(options, "a live replay");
   if (realtime_) {
@@ -140,7 +142,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   if (!quiet_) {
     Notice(fmt::format("replays {} of run {} in {} steps", channels_, run.run_id, scenario.steps));
   }
-  const runner::ExperimentResult result = runner::RunExperiment(scenario, options);
+  const runner::RunResult result = runner::RunScenario(scenario, options);
   const replay::TrackDifference track = replay::CompareTracks(recorded, read, options.log);
   if (json) {
     nlohmann::ordered_json document{{"log", recorded.string()},

@@ -23,7 +23,7 @@ class LiveReplay {
   /// Makes the run, and prints how much its track differs from the recorded track.
   /// @param recorded_run id of the recorded run; nullopt: the first run in the log
   /// @return the exit code
-  /// @throws InputError, Interrupted, std::runtime_error like RunExperiment()
+  /// @throws InputError, Interrupted, std::runtime_error like RunScenario()
   int Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
           bool json) const;
 

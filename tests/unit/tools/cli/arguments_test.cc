@@ -6,15 +6,14 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "common/errors.h"
+#include "tests/support/command.h"
 #include "tests/support/environment_url.h"
 #include "tests/support/input_errors.h"
-#include "tests/unit/tools/short_run.h"
 
 namespace fogline::test {
 namespace {
@@ -69,63 +68,9 @@ TEST_F(ScenarioArgumentsTest, RefuseAnOverrideOfAFieldThatTheVerbSets) {
   EXPECT_EQ(ErrorOf([&] { arguments_.RefuseOverrideOf("/arbitrator", "see there"); }), "");
 }
 
-// ---- logs
+// ---- logs, seeds, JSON, builds
 
-class LogArgumentsTest : public testing::Test {
- protected:
-  std::string Refusal(const std::string& file, bool force) const {
-    return ErrorOf([&] { cli::PrepareLog(file, force); });
-  }
-  const ScratchFolder folder_;
-  const std::string log_ = folder_.File("run.lcm");
-};
-
-TEST_F(LogArgumentsTest, ReplaceALogOnlyByForce) {
-  runner::RunExperiment(Paper(10), Direct(log_));
-  const std::string before = Content(log_);
-  EXPECT_EQ(Refusal(log_, false), log_ + ": error: --log: the file exists; --force replaces it");
-  {
-    const log::LogOfRun log = cli::PrepareLog(log_, true);
-    EXPECT_EQ(log.path(), log_);
-    EXPECT_EQ(Content(log_), "");
-    EXPECT_THAT(Refusal(log_, true), HasSubstr("is being written by another run"));
-  }
-  EXPECT_EQ(Content(log_), before) << "a run that never began gives the older log back";
-}
-
-TEST_F(LogArgumentsTest, MakeANewLogAndRemoveItIfItStaysEmpty) {
-  {
-    const log::LogOfRun log = cli::PrepareLog(log_, false);
-    EXPECT_TRUE(std::filesystem::exists(log_));
-  }
-  EXPECT_FALSE(std::filesystem::exists(log_));
-}
-
-TEST_F(LogArgumentsTest, ReplaceNothingElse) {
-  std::ofstream(log_) << "precious";
-  EXPECT_EQ(
-      Refusal(log_, true),
-      log_ + ": error: --log: the file is no event log and is not replaced, even with --force");
-  EXPECT_EQ(Content(log_), "precious");
-  EXPECT_EQ(Refusal(folder_.path().string(), true),
-            folder_.path().string() + ": error: --log: not a file");
-  EXPECT_THAT(Refusal(folder_.File("none/run.lcm"), false), HasSubstr("--log"));
-}
-
-TEST_F(LogArgumentsTest, CountTheLogsOfAScenario) {
-  const std::filesystem::path here = std::filesystem::current_path();
-  std::filesystem::current_path(folder_.path());
-  {
-    const log::LogOfRun first = cli::FreshLog("scenario/paper.json");
-    const log::LogOfRun second = cli::FreshLog("scenario/paper.json");
-    EXPECT_EQ(first.path(), "logs/paper-1.lcm");
-    EXPECT_EQ(second.path(), "logs/paper-2.lcm");
-    EXPECT_TRUE(std::filesystem::exists(second.path()));
-  }
-  std::filesystem::current_path(here);
-}
-
-TEST_F(LogArgumentsTest, LeaveOutALogThatCannotBeRead) {
+TEST(LogArgumentsTest, LeaveOutALogThatCannotBeRead) {
   std::vector<std::string> used;
   bool readable = true;
   const Printed printed = WhatIsPrinted([&] {
@@ -139,8 +84,6 @@ TEST_F(LogArgumentsTest, LeaveOutALogThatCannotBeRead) {
   EXPECT_EQ(printed.err, "b.lcm: error: torn\n");
   EXPECT_TRUE(cli::ForEachReadable({"a.lcm"}, [](const auto&) {}));
 }
-
-// ---- seeds, JSON, builds
 
 TEST(SeedArgumentsTest, ExplainASingleNumberThatMayBeMeantAsACount) {
   sweep::SeedRange seeds;
@@ -225,67 +168,6 @@ TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
   CLI::App app;
   const cli::NetworkArguments unsaid(app, "to observe");
   EXPECT_THAT(ErrorOf([&] { unsaid.Url(); }), StartsWith("error: LCM_DEFAULT_URL memq://: "));
-}
-
-// ---- measures
-
-runner::ExperimentResult Measured() {
-  runner::ExperimentResult result;
-  result.measures.steps = 500;
-  result.measures.min_host_gap_m = 12.34567;
-  result.followers.resize(1);
-  return result;
-}
-
-TEST(MeasuresTest, AreAllInTheJsonWithAllTheirDigits) {
-  const auto json = nlohmann::json::parse(cli::MetricsJson(Measured()));
-  EXPECT_EQ(json["steps"], 500);
-  EXPECT_EQ(json["min_host_gap_m"], 12.34567);
-  EXPECT_TRUE(json["rhe_pct"].is_null());
-  std::size_t measures = 0;
-  metrics::VisitMetrics(metrics::RunMetrics(), [&](auto&&...) { ++measures; });
-  EXPECT_EQ(json.size(), measures) << "no list of one following car";
-}
-
-TEST(MeasuresTest, AreALineEachForAPerson) {
-  const std::string text = cli::MetricsText(Measured());
-  EXPECT_THAT(text, HasSubstr("  min_host_gap_m                         12.35 m\n"));
-  EXPECT_THAT(text, HasSubstr("  rhe_pct                                    - %\n"));
-  EXPECT_EQ(text.find("follower  "), std::string::npos);
-}
-
-TEST(MeasuresTest, AreThoseOfEachCarOfAColumn) {
-  runner::ExperimentResult result = Measured();
-  result.followers.resize(2);
-  result.followers[1].min_gap_m = 3.25;
-  const auto json = nlohmann::json::parse(cli::MetricsJson(result));
-  ASSERT_EQ(json["followers"].size(), 2U);
-  EXPECT_TRUE(json["followers"][0]["min_gap_m"].is_null());
-  EXPECT_EQ(json["followers"][1]["min_gap_m"], 3.25);
-  const std::string text = cli::MetricsText(result);
-  EXPECT_THAT(text, HasSubstr("\n  follower    min_gap_m  min_ttc_s  "));
-  EXPECT_THAT(text, HasSubstr("\n  2               3.250          -  "));
-}
-
-TEST(MeasuresTest, OfARunInRealTimeAreItsFiguresAndFallbacks) {
-  log::RealtimeFigures figures;
-  figures.has_status = true;
-  figures.ticks_late = 4;
-  figures.fallbacks = {
-      {.step = 17, .role = "arbitrator", .what = "TRACK lost", .culprit = "fusion"},
-      {.step = 18, .role = "world", .what = "HOST_COMMAND lost"}};
-  figures.fallbacks_left_out = 3;
-  const auto json = cli::RealtimeJson(figures);
-  EXPECT_EQ(json["ticks_late"], 4);
-  EXPECT_EQ(json["fallbacks"][0].dump(),
-            R"({"step":17,"role":"arbitrator","what":"TRACK lost","culprit":"fusion"})");
-  EXPECT_TRUE(json["fallbacks"][1]["culprit"].is_null());
-  EXPECT_EQ(json["fallbacks_left_out"], 3);
-
-  const std::string text = cli::RealtimeText(figures);
-  EXPECT_THAT(text, HasSubstr("  ticks_late                                 4 \n"));
-  EXPECT_THAT(text, HasSubstr("  " + figures.fallbacks[0].Text() + "\n"));
-  EXPECT_THAT(text, testing::EndsWith("  ... and 3 more\n"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class PairingTest : public testing::Test {
  protected:
   runner::LoggedRun Run(const std::vector<std::string>& overrides) {
     const std::string log = folder_.File(std::to_string(++logs_) + ".lcm");
-    runner::RunExperiment(Paper(kSteps, overrides), Direct(log));
+    runner::RunScenario(Paper(kSteps, overrides), Direct(log));
     return runner::ReadLoggedRun(log);
   }
   const ScratchFolder folder_;

@@ -29,7 +29,7 @@ RunOutcome Undisturbed() {
 RunOutcome Troubled() {
   RunOutcome outcome = Undisturbed();
   outcome.resumed = 100;
-  runner::ExperimentResult& result = outcome.result;
+  runner::RunResult& result = outcome.result;
   result.steps = 123;
   result.repairs = 7;
   result.refused[0] = 2;

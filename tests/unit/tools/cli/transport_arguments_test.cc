@@ -15,14 +15,14 @@
 namespace fogline::test {
 namespace {
 
-using runner::ExperimentOptions;
+using runner::RunOptions;
 
 /// The options of a run that follow from its command line.
-ExperimentOptions Read(std::vector<std::string> words, const std::string& usual = "udpm") {
+RunOptions Read(std::vector<std::string> words, const std::string& usual = "udpm") {
   CLI::App app;
   const cli::TransportArguments arguments(app, usual);
   app.parse(std::vector(words.rbegin(), words.rend()));
-  ExperimentOptions options;
+  RunOptions options;
   arguments.Apply(options);
   return options;
 }
@@ -58,14 +58,13 @@ TEST(TransportArgumentsTest, TakeTheNetworkOfTheEnvironmentForARunOfProcesses) {
 
 TEST(TransportArgumentsTest, SetWhatTheRunDoes) {
   const EnvironmentUrl environment;
-  const ExperimentOptions usual = Read({});
+  const RunOptions usual = Read({});
   EXPECT_TRUE(usual.external.empty());
   EXPECT_EQ(usual.wait, milliseconds(60'000));
   EXPECT_FALSE(usual.same_build);
   EXPECT_EQ(usual.verify, std::nullopt);
-  const ExperimentOptions options =
-      Read({"--external", "driver", "--external", "acc", "--wait", "1.5", "--same-build",
-            "--verify", "--faults", "loss=0.1"});
+  const RunOptions options = Read({"--external", "driver", "--external", "acc", "--wait", "1.5",
+                                   "--same-build", "--verify", "--faults", "loss=0.1"});
   EXPECT_EQ(options.external, (std::vector{Role::kAcc, Role::kDriver})) << "in kRoles' order";
   EXPECT_EQ(options.wait, milliseconds(1500));
   EXPECT_TRUE(options.same_build);
@@ -119,7 +118,7 @@ TEST(TransportArgumentsTest, OfferNoRecorderFromElsewhere) {
 
 TEST(TransportArgumentsTest, PlaceRolesOnOtherMachines) {
   const EnvironmentUrl environment;
-  const ExperimentOptions options = Read({"--on", "acc=lab2", "--on", "radar=lab3"});
+  const RunOptions options = Read({"--on", "acc=lab2", "--on", "radar=lab3"});
   EXPECT_EQ(options.transport, "udpm");
   EXPECT_EQ(options.hosts.hosts.size(), 2U);
   EXPECT_TRUE(options.hosts.places.contains(Role::kAcc));

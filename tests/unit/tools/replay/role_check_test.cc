@@ -34,7 +34,7 @@ constexpr std::size_t kComputing = kRoles.size() - 1;  // all roles except the r
 /// The log of a run, and a copy in which a message of one step is altered.
 class RoleCheckTest : public testing::Test {
  protected:
-  RoleCheckTest() { runner::RunExperiment(Paper(kSteps), Direct(log_)); }
+  RoleCheckTest() { runner::RunScenario(Paper(kSteps), Direct(log_)); }
 
   /// Alters the message of type M of a step in the copy.
   template <class M, class Change>

@@ -17,7 +17,7 @@ namespace fogline::test {
 namespace {
 
 using runner::DirectLog;
-using runner::ExperimentOptions;
+using runner::RunOptions;
 
 constexpr std::int64_t kDirectSteps = 12;
 constexpr std::int64_t kDirectCut = 7;
@@ -37,13 +37,13 @@ class DirectLogTest : public testing::Test {
     }
   }
   /// Writes the log of a run up to step kDirectCut - 1. @return the options that resume this log
-  ExperimentOptions Resumed() const {
+  RunOptions Resumed() const {
     Copy(log_, part_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
            return event.channel == "RUN" ||
                   runtime::ReadInt64(data, runtime::kStepOffset) < kDirectCut;
          });
-    ExperimentOptions options = Direct(part_);
+    RunOptions options = Direct(part_);
     options.resume = runner::ResumedLog(part_, nullptr).resumption();
     return options;
   }
@@ -52,7 +52,7 @@ class DirectLogTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
   const std::string part_ = folder_.File("part.lcm");
   const Scenario scenario_ = Paper(kDirectSteps);
-  const runner::ExperimentResult whole_ = runner::RunExperiment(scenario_, Direct(log_));
+  const runner::RunResult whole_ = runner::RunScenario(scenario_, Direct(log_));
   const std::int64_t run_id_ = ReadToTheEnd(log_).run_id;
 };
 

@@ -13,12 +13,12 @@ namespace fogline::test {
 namespace {
 
 using runner::CommandToGoOn;
-using runner::ExperimentOptions;
 using runner::KeptLog;
+using runner::RunOptions;
 
 /// Default options, except for the name of the log.
-ExperimentOptions OnlyLog() {
-  ExperimentOptions options;
+RunOptions OnlyLog() {
+  RunOptions options;
   options.log = "run.lcm";
   return options;
 }
@@ -30,7 +30,7 @@ class CommandToGoOnTest : public testing::Test {
 
 TEST_F(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
   EXPECT_EQ(CommandToGoOn(OnlyLog()), "fogline run --resume run.lcm");
-  ExperimentOptions options = OnlyLog();
+  RunOptions options = OnlyLog();
   options.transport = "memq";
   options.external = {Role::kDriver, Role::kAcc};
   options.pace = 0.5;
@@ -50,14 +50,14 @@ TEST_F(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
 }
 
 TEST_F(CommandToGoOnTest, PlacesTheRolesOnTheSameMachines) {
-  ExperimentOptions options = OnlyLog();
+  RunOptions options = OnlyLog();
   options.hosts = hosts::MakePlan({.on = {"fusion=anna@lab2"}, .ssh = "ssh -4"});
   EXPECT_EQ(CommandToGoOn(options),
             "fogline run --resume run.lcm --on 'fusion=anna@lab2' --ssh 'ssh -4'");
 }
 
 TEST_F(CommandToGoOnTest, QuotesWordsForAShell) {
-  ExperimentOptions options = OnlyLog();
+  RunOptions options = OnlyLog();
   options.log = "my run's log.lcm";
   options.transport = "udpm://239.255.76.67:7700?ttl=0";
   EXPECT_EQ(CommandToGoOn(options), R"(fogline run --resume 'my run'\''s log.lcm' --lcm-url )"
@@ -71,16 +71,16 @@ TEST_F(CommandToGoOnTest, NamesTheTransportIfTheEnvironmentNamesAnother) {
 
 TEST_F(CommandToGoOnTest, IsNoneWithoutALogOrInRealTime) {
   EXPECT_EQ(CommandToGoOn({}), "");
-  ExperimentOptions options = OnlyLog();
+  RunOptions options = OnlyLog();
   options.realtime = true;
   EXPECT_EQ(CommandToGoOn(options), "");
 }
 
 TEST(KeptLogTest, TellsWhatARunHasLeft) {
   const ScratchFolder folder;
-  ExperimentOptions options = Direct(folder.File("run.lcm"));
+  RunOptions options = Direct(folder.File("run.lcm"));
   EXPECT_EQ(KeptLog(1, options), "no log was written");
-  runner::RunExperiment(Paper(10), options);
+  runner::RunScenario(Paper(10), options);
   const std::int64_t run_id = ReadToTheEnd(options.log).run_id;
   const std::string log = "the log so far: " + options.log.string();
   EXPECT_EQ(KeptLog(run_id, options), log);

@@ -28,7 +28,7 @@ class LogKeeperTest : public testing::Test {
  protected:
   LogKeeperTest() {
     const std::string sealed = folder_.File("sealed.lcm");
-    runner::RunExperiment(Paper(kKeptSteps), Direct(sealed));
+    runner::RunScenario(Paper(kKeptSteps), Direct(sealed));
     log::EventLogReader reader(sealed);
     log::EventLogWriter writer(log_);
     while (const auto event = reader.Next()) {

@@ -30,7 +30,7 @@ class PersonMeasuresTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new ScratchFolder;
-    runner::RunExperiment(
+    runner::RunScenario(
         LoadScenario(SourceDirectory() / "scenario/dense_fog.json",
                      {"/steps=120", "/fog/start_s=1", "/fog/duration_s=4",
                       "/arbitrator/take_over/mode=requested", "/arbitrator/take_over/time/mean_s=2",

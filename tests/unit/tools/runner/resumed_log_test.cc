@@ -26,7 +26,7 @@ constexpr std::int64_t kResumedCut = 12;
 
 class ResumedLogTest : public testing::Test {
  protected:
-  ResumedLogTest() { runner::RunExperiment(Paper(kResumedSteps), Direct(log_)); }
+  ResumedLogTest() { runner::RunScenario(Paper(kResumedSteps), Direct(log_)); }
 
   /// A copy of the log that ends after step kResumedCut - 1, like the log of a killed recorder.
   std::string CutOff() const {
@@ -110,9 +110,9 @@ TEST_F(ResumedLogTest, IsSealedWithTheSameKey) {
 TEST_F(ResumedLogTest, IsNotResumedWithoutTheKeyThatSignedItsSeal) {
   const std::string key_file = folder_.File("key");
   runtime::SigningKey::Create(key_file);
-  runner::ExperimentOptions options = Direct(folder_.File("signed.lcm"));
+  runner::RunOptions options = Direct(folder_.File("signed.lcm"));
   options.traffic.key_file = key_file;
-  runner::RunExperiment(Paper(kResumedSteps), options);
+  runner::RunScenario(Paper(kResumedSteps), options);
   const std::string log = options.log.string();
   EXPECT_EQ(
       Refusal(log),

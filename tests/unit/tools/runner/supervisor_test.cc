@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/children.h"
 #include "tests/unit/tools/short_run.h"
 

@@ -17,7 +17,7 @@
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "tests/support/command.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::trials {
 namespace {
@@ -43,7 +43,7 @@ class TablesTest : public ::testing::Test {
 
   /// Makes the run of the trial.
   void Run(const Scenario& scenario) const {
-    runner::RunExperiment(scenario, {.transport = "direct", .log = log_});
+    runner::RunScenario(scenario, {.transport = "direct", .log = log_});
   }
   /// Adds the end of the trial, and its answer.
   void Answer(double value, const std::string& experiment_hash = "") const {

@@ -11,7 +11,7 @@
 
 #include "services/log/run_log.h"
 #include "tests/support/command.h"
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 namespace fogline::trials {
 namespace {
@@ -27,7 +27,7 @@ class TrialLogTest : public ::testing::Test {
   TrialLogTest() {
     Scenario scenario;
     scenario.steps = 20;
-    result_ = runner::RunExperiment(scenario, {.transport = "direct", .log = log_});
+    result_ = runner::RunScenario(scenario, {.transport = "direct", .log = log_});
   }
 
   trial_t Fact(std::int8_t kind, std::int64_t sequence, const std::string& text = "") const {
@@ -45,7 +45,7 @@ class TrialLogTest : public ::testing::Test {
 
   test::ScratchFolder folder_;
   std::filesystem::path log_ = folder_.path() / "trial.lcm";
-  runner::ExperimentResult result_;
+  runner::RunResult result_;
 };
 
 TEST_F(TrialLogTest, ACompleteRunWithoutAnEndIsToBeAsked) {

@@ -20,8 +20,8 @@ metrics::TakeOverMeasures Taken() {
           .sensor_excluded_s = 1};
 }
 
-runner::ExperimentResult WithARequest() {
-  runner::ExperimentResult result;
+runner::RunResult WithARequest() {
+  runner::RunResult result;
   result.take_overs = {Taken(), {.outcome = TakeOverEnd::kWithdrawn, .requested_s = 40}};
   return result;
 }
@@ -50,7 +50,7 @@ TEST(TakeOverTextTest, HasEveryMeasureInItsJson) {
 }
 
 TEST(TakeOverTextTest, HasTheLatencyOfAPersonsInputs) {
-  runner::ExperimentResult result;
+  runner::RunResult result;
   result.input_latency = {.inputs = 9, .p50_us = 10, .p95_us = 20, .max_us = 30};
   nlohmann::ordered_json json;
   AddTakeOvers(result, json);

@@ -22,7 +22,7 @@ class LogIndexTest : public testing::Test {
   /// Runs the beginning of the paper's scenario in this process. @return its log
   std::string Run(std::int64_t steps, std::vector<std::string> overrides = {}) {
     const std::string file = folder_.File("run.lcm");
-    runner::RunExperiment(Paper(steps, std::move(overrides)), Direct(file));
+    runner::RunScenario(Paper(steps, std::move(overrides)), Direct(file));
     return file;
   }
   std::string File(const std::string& name) const { return folder_.File(name); }

@@ -1,4 +1,4 @@
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
@@ -18,20 +18,19 @@
 namespace fogline::test {
 namespace {
 
-using runner::ExperimentOptions;
-using runner::ExperimentResult;
 using runner::LoggedRun;
+using runner::RunOptions;
+using runner::RunResult;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr std::int64_t kExperimentSteps = 30;
+constexpr std::int64_t kRunSteps = 30;
 
 TEST(CheckPossibleTest, NamesTheFieldOfAScenarioThatNoPartCanHave) {
-  EXPECT_NO_THROW(runner::CheckPossible(Paper(kExperimentSteps), "paper.json"));
-  const Scenario impossible =
-      Paper(kExperimentSteps,
-            {R"(/road/grade=[{"position_m":50,"grade":0},{"position_m":20,"grade":0.05}])"});
+  EXPECT_NO_THROW(runner::CheckPossible(Paper(kRunSteps), "paper.json"));
+  const Scenario impossible = Paper(
+      kRunSteps, {R"(/road/grade=[{"position_m":50,"grade":0},{"position_m":20,"grade":0.05}])"});
   try {
     runner::CheckPossible(impossible, "mine.json");
     FAIL() << "it is possible";
@@ -50,23 +49,23 @@ TEST(CheckPossibleTest, NamesTheFieldOfAScenarioThatNoPartCanHave) {
 /// One run without messages, and one over messages in memory.
 class RunTest : public testing::Test {
  protected:
-  ExperimentResult Run(const std::string& transport, const std::string& log = "") const {
-    ExperimentOptions options;
+  RunResult Run(const std::string& transport, const std::string& log = "") const {
+    RunOptions options;
     options.transport = transport;
     options.log = log;
-    return runner::RunExperiment(Paper(kExperimentSteps), options);
+    return runner::RunScenario(Paper(kRunSteps), options);
   }
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
 };
 
 TEST_F(RunTest, HasTheSameResultOverAnyTransport) {
-  const ExperimentResult direct = Run("direct");
-  const ExperimentResult memq = Run("memq", log_);
+  const RunResult direct = Run("direct");
+  const RunResult memq = Run("memq", log_);
   EXPECT_EQ(direct.transport, "direct");
   EXPECT_EQ(memq.transport, "memq");
-  EXPECT_EQ(direct.steps, kExperimentSteps);
-  EXPECT_EQ(memq.steps, kExperimentSteps);
+  EXPECT_EQ(direct.steps, kRunSteps);
+  EXPECT_EQ(memq.steps, kRunSteps);
   EXPECT_EQ(direct.digest, memq.digest);
   EXPECT_EQ(direct.seed, memq.seed);
   EXPECT_EQ(direct.measures.min_host_gap_m, memq.measures.min_host_gap_m);
@@ -79,23 +78,22 @@ TEST_F(RunTest, HasTheSameResultOverAnyTransport) {
 }
 
 TEST_F(RunTest, KeepsTheSamplesOnlyOnRequest) {
-  ExperimentOptions options = Direct("");
-  EXPECT_THAT(runner::RunExperiment(Paper(kExperimentSteps), options).samples, IsEmpty());
+  RunOptions options = Direct("");
+  EXPECT_THAT(runner::RunScenario(Paper(kRunSteps), options).samples, IsEmpty());
   options.samples = true;
-  EXPECT_THAT(runner::RunExperiment(Paper(kExperimentSteps), options).samples,
-              SizeIs(kExperimentSteps));
+  EXPECT_THAT(runner::RunScenario(Paper(kRunSteps), options).samples, SizeIs(kRunSteps));
 }
 
 TEST_F(RunTest, ComputesTheStepsAgainOnRequest) {
-  ExperimentOptions options;
+  RunOptions options;
   options.transport = "memq";
   options.verify = true;
-  const ExperimentResult result = runner::RunExperiment(Paper(kExperimentSteps), options);
+  const RunResult result = runner::RunScenario(Paper(kRunSteps), options);
   ASSERT_TRUE(result.verification);
   EXPECT_TRUE(result.verification->Holds());
   EXPECT_THAT(result.verification->roles, SizeIs(kRoles.size() - 1));
   options.verify.reset();
-  EXPECT_FALSE(runner::RunExperiment(Paper(kExperimentSteps), options).verification);
+  EXPECT_FALSE(runner::RunScenario(Paper(kRunSteps), options).verification);
 }
 
 TEST_F(RunTest, RefusesATransportThatIsNone) {
@@ -104,15 +102,15 @@ TEST_F(RunTest, RefusesATransportThatIsNone) {
 }
 
 TEST_F(RunTest, ReadFromItsLogIsTheSame) {
-  const ExperimentResult made = Run("direct", log_);
+  const RunResult made = Run("direct", log_);
   const LoggedRun read = runner::ReadLoggedRun(log_);
-  const LoggedRun measured = runner::MeasureLoggedRun(log_, Paper(kExperimentSteps));
-  EXPECT_THAT(read.result.samples, SizeIs(kExperimentSteps));
+  const LoggedRun measured = runner::MeasureLoggedRun(log_, Paper(kRunSteps));
+  EXPECT_THAT(read.result.samples, SizeIs(kRunSteps));
   EXPECT_THAT(measured.result.samples, IsEmpty());
   for (const LoggedRun& run : {read, measured}) {
     EXPECT_TRUE(run.complete) << run.note;
     EXPECT_EQ(run.result.digest, made.digest);
-    EXPECT_EQ(run.result.steps, kExperimentSteps);
+    EXPECT_EQ(run.result.steps, kRunSteps);
     EXPECT_EQ(run.result.seed, made.seed);
     EXPECT_EQ(run.result.log, log_);
     EXPECT_EQ(run.result.measures.min_host_gap_m, made.measures.min_host_gap_m);
@@ -147,10 +145,10 @@ TEST(BusRunTest, DrawsAPositiveIdThatNoOtherRunHas) {
 TEST(BusRunTest, ReportsTheRunAndItsLog) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
-  ExperimentOptions options;
+  RunOptions options;
   options.transport = "memq";
   const runner::LogKeeper keeper(log);
-  const runner::BusRun run = runner::RunOnBus(Paper(kExperimentSteps), options, log, keeper);
+  const runner::BusRun run = runner::RunOnBus(Paper(kRunSteps), options, log, keeper);
   EXPECT_EQ(ReadToTheEnd(log).run_id, run.run_id);
   EXPECT_TRUE(keeper.HasAllTold(run.written));
   EXPECT_NO_THROW(keeper.Check(run.written));

@@ -1,4 +1,4 @@
-#include "tools/runner/experiment.h"
+#include "tools/runner/scenario_run.h"
 
 #include <unistd.h>
 
@@ -79,11 +79,10 @@ class StepWriter {
   std::vector<std::uint8_t> buffer_;
 };
 
-ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& options,
-                         std::int64_t run_id) {
+RunResult Compute(const Scenario& scenario, const RunOptions& options, std::int64_t run_id) {
   std::optional<DirectLog> log;
   if (!options.log.empty()) log.emplace(options, run_id, scenario);
-  ExperimentResult result;
+  RunResult result;
   runtime::Digest digest;
   StepWriter writer(digest, log ? &*log : nullptr);
   metrics::MetricsAccumulator measures(scenario);
@@ -119,7 +118,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   return result;
 }
 
-ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
+RunResult RunDirect(const Scenario& scenario, const RunOptions& options) {
   const std::int64_t run_id = options.resume ? options.resume->front.run_id : RunIdOf(options);
   try {
     return Compute(scenario, options, run_id);
@@ -218,7 +217,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
 
 /// Compares the log with the recorder's reports, and reads the log.
 LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
-                     const Scenario& scenario, const ExperimentOptions& options) {
+                     const Scenario& scenario, const RunOptions& options) {
   const auto read = [&] {
     const log::ReadOptions whole{.has_all = true};
     LoggedRun logged =
@@ -244,8 +243,8 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
 }
 
 /// Reads, verifies and seals the log of a run that has ended.
-ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, BusRun run,
-                            const Scenario& scenario, const ExperimentOptions& options) {
+RunResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, BusRun run,
+                     const Scenario& scenario, const RunOptions& options) {
   LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
   const auto key = runtime::KeyOf(options.traffic);
   const bool checked = keeper.HasAllTold(run.written);
@@ -258,7 +257,7 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
         fmt::format("{}: the log cannot be signed, because the recorder's last report was lost",
                     PathText(log)));
   }
-  ExperimentResult result = std::move(logged.result);
+  RunResult result = std::move(logged.result);
   const bool elsewhere = !options.external.empty() || !options.hosts.empty();
   if (options.verify.value_or(options.resume || elsewhere)) {
     result.verification = replay::VerifyRun(log, logged, run.other_builds);
@@ -280,7 +279,7 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
   return result;
 }
 
-ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
+RunResult RunLogged(const Scenario& scenario, const RunOptions& options) {
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
@@ -320,14 +319,14 @@ std::string WhyTooFast(const Scenario& scenario, double speed) {
                      scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS);
 }
 
-ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
+RunResult RunScenario(const Scenario& scenario, const RunOptions& options) {
   if (scenario.lead.profile == LeadProfile::kSumo && scenario.lead.sumo.version.empty()) {
     // The log names SUMO's version, because only this version computes the run again.
     Scenario stated = scenario;
     stated.lead.sumo.version = models::SumoVersion();
-    return RunExperiment(stated, options);
+    return RunScenario(stated, options);
   }
-  ExperimentResult result =
+  RunResult result =
       options.transport == "direct" ? RunDirect(scenario, options) : RunLogged(scenario, options);
   result.transport = options.transport;
   return result;

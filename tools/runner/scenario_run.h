@@ -35,7 +35,7 @@ struct Resumption {
   log::Remains remains;
 };
 
-struct ExperimentOptions {
+struct RunOptions {
   /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
   /// for each role, a multicast port for this run), tcpq (a process for each role, a TCP relay for
   /// this run), or an LCM URL (a process for each role on that network).
@@ -86,7 +86,7 @@ struct Restarts {
   std::string last;  // how the previous process ended
 };
 
-struct ExperimentResult {
+struct RunResult {
   std::int64_t seed = 0;
   std::string transport;
   std::int64_t steps = 0;
@@ -124,17 +124,17 @@ std::string WhyTooFast(const Scenario& scenario, double speed);
 /// Opens the network of a run once, with the key and the faults of the run, and closes it. So a
 /// caller can check them before a person waits for the run, and before a file is written. A relay
 /// of the run's own (tcpq) is not started.
-/// @throws InputError, std::runtime_error as RunExperiment()
-void CheckNetwork(const ExperimentOptions& options);
+/// @throws InputError, std::runtime_error as RunScenario()
+void CheckNetwork(const RunOptions& options);
 
 /// Runs a scenario to its end and reads the result from its log.
 /// @throws InputError for an invalid transport or log, Interrupted after Ctrl-C, std::runtime_error
 ///     with one line that names the cause when the run fails; a log stays readable
-ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options);
+RunResult RunScenario(const Scenario& scenario, const RunOptions& options);
 
 /// A run as read from its log.
 struct LoggedRun : log::RunLog {
-  ExperimentResult result;
+  RunResult result;
 };
 /// Reads a run with the samples of all its steps. If the options allow gaps, a step that lacks
 /// TRUTH has no sample, and result.take_overs is empty if the measures of take-overs are unknown.
