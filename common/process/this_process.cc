@@ -32,14 +32,16 @@ ProcessUse MeasureThisProcess() {
 namespace {
 
 /// @param thread 0: the calling thread
-bool RunFirst(pid_t thread, int priority) {
+bool RunFirst(pid_t thread, int priority, int flags = SCHED_RESET_ON_FORK) {
   const sched_param wanted{.sched_priority = priority};
-  return sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0;
+  return sched_setscheduler(thread, SCHED_FIFO | flags, &wanted) == 0;
 }
 
 }  // namespace
 
-bool RunThreadBeforeOthers(int priority) { return RunFirst(0, priority); }
+bool RunThreadBeforeOthers(int priority, bool with_its_threads) {
+  return RunFirst(0, priority, with_its_threads ? 0 : SCHED_RESET_ON_FORK);
+}
 
 bool RunBeforeOthers(int priority) {
   bool granted = true;

@@ -18,9 +18,10 @@ ProcessUse MeasureThisProcess();
 /// @return whether the kernel granted both requests, with SCHED_FIFO for all threads
 bool RunBeforeOthers(int priority);
 
-/// Asks the kernel to run the calling thread before all ordinary threads (SCHED_FIFO), but not the
-/// threads that it starts. @return whether the kernel granted this
-bool RunThreadBeforeOthers(int priority);
+/// Asks the kernel to run the calling thread before all ordinary threads (SCHED_FIFO).
+/// @param with_its_threads whether this also applies to the threads that it will start
+/// @return whether the kernel granted this
+bool RunThreadBeforeOthers(int priority, bool with_its_threads = false);
 
 /// After this call, a write beyond the limit for the size of files (ulimit -f) fails like a write
 /// on a full disk. The call affects this process and the processes that it starts. Without the

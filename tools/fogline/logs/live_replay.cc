@@ -129,7 +129,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
     cli::RunInRealtime(options, speed);
     cli::CheckPeriod(scenario, speed);
   }
-  replay::LiveRoles roles(messages, options.traffic);
+  replay::LiveRoles roles(messages, options.traffic, realtime_);
   options.external = roles.roles();
   options.verify = false;  // the recorded roles compute nothing
   options.on_run = [&roles](std::int64_t run_id, const std::string& url) {

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "common/process/this_process.h"
 #include "services/runtime/transport/bus.h"
 
 namespace fogline::replay {
@@ -11,11 +12,14 @@ namespace {
 
 // A thread checks at least this often whether it should end.
 constexpr Duration kLookEvery = milliseconds(50);
+// Priority of the threads in real time, as that of the processes of roles.
+constexpr int kPriority = 1;
 
 }  // namespace
 
-LiveRoles::LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic)
-    : messages_(messages), traffic_(std::move(traffic)) {}
+LiveRoles::LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic,
+                     bool realtime)
+    : messages_(messages), traffic_(std::move(traffic)), realtime_(realtime) {}
 
 LiveRoles::~LiveRoles() {
   over_ = true;
@@ -44,6 +48,8 @@ void LiveRoles::Join(std::int64_t run_id, const std::string& url) {
 }
 
 void LiveRoles::TakePart(Part& part) const {
+  // The thread starts one that keeps the backlog of its bus.
+  if (realtime_) RunThreadBeforeOthers(kPriority, /*with_its_threads=*/true);
   runtime::Node& node = part.node->node();
   try {
     while (!over_ && !node.parts().own.left()) {

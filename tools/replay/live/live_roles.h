@@ -17,7 +17,9 @@ namespace fogline::replay {
 class LiveRoles {
  public:
   /// @param messages must outlive this object
-  LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic);
+  /// @param realtime whether the run is in real time; its threads then run before ordinary threads,
+  ///     like the processes of roles, if the kernel grants it
+  LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic, bool realtime);
   /// Ends the threads.
   ~LiveRoles();
   LiveRoles(const LiveRoles&) = delete;
@@ -39,6 +41,7 @@ class LiveRoles {
 
   const RecordedMessages& messages_;
   runtime::TrafficOptions traffic_;
+  bool realtime_;
   std::atomic<bool> over_ = false;
   std::vector<std::unique_ptr<Part>> parts_;
 };
