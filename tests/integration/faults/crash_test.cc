@@ -125,7 +125,7 @@ TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
 
 TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
   // GIVEN a run that lasts longer than the runner needs to notice the end of a role
-  WatchedRun watched({"--external", "driver"}, 600);
+  WatchedRun watched({"--external", "driver", "--stall-timeout", "30"}, 600);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   const Background first(command);
   watched.WaitForStep(100);
@@ -165,7 +165,7 @@ TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
 
 TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   // GIVEN a stopped driver, and a second driver that has replaced the first one
-  WatchedRun watched({"--external", "driver"}, 1200);
+  WatchedRun watched({"--external", "driver", "--stall-timeout", "30"}, 1200);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   Background first(command);
   watched.WaitForStep(100);

@@ -30,7 +30,7 @@ TEST_F(ResumeTest, GoesOnOverAnotherTransportThanItBeganWith) {
   const auto whole = Undisturbed();
   for (const char* transport : {"direct", "memq", "tcpq"}) {
     std::filesystem::remove(log_);
-    SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(150);
+    SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(50);
     EXPECT_EQ(ExpectSameEnd(whole, {"--transport", transport})["transport"], transport);
   }
 }
@@ -50,7 +50,7 @@ TEST_F(ResumeTest, GoesOnAfterItHasBeenKilledWhileItWentOn) {
 
 TEST_F(ResumeTest, RefusesNoMessageOfARunThatGoesOnUndisturbed) {
   const auto whole = Undisturbed();
-  SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(200);
+  SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(100);
   const auto result = ExpectSameEnd(whole);
   for (const auto& [kind, count] : result["refused"].items()) EXPECT_EQ(count, 0) << kind;
   EXPECT_EQ(result["verified"]["roles"].size(), kRoles.size() - 1);

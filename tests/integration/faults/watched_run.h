@@ -18,10 +18,10 @@
 
 namespace fogline::test {
 
-// Number of steps of a watched run, and its pace. At this pace each step takes 5 ms. So the run
-// takes 2 s, and a test on a busy machine can still act in its middle.
+// Number of steps of a watched run, and its pace. At this pace each step takes 10 ms. So the run
+// takes 4 s, and a test on a busy machine can still act in its middle.
 inline constexpr int kSteps = 400;
-inline constexpr int kPace = 20;
+inline constexpr int kPace = 10;
 
 inline std::vector<std::string> PaperOf(int steps, const std::vector<std::string>& more) {
   std::vector<std::string> command{Program("fogline"), "run",   "scenario/paper.json",

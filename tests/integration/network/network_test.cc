@@ -98,8 +98,8 @@ class TwoRunsTest : public NetworkTest, public testing::WithParamInterface<std::
 
 TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   const Lab lab(2);
-  // GIVEN a run that takes 5 s
-  Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "3"})));
+  // GIVEN a run that takes 10 s
+  Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "1.5"})));
   ASSERT_TRUE(paced.WaitForErr("processes: "));
   // WHEN another run takes place at the same time. It differs from the first run from the first
   // step on

@@ -42,9 +42,9 @@ class OutageTest : public NetworkTest {
         "ip link add eth0 type veth peer name peer0; ip addr add 192.0.2.1/24 dev eth0;"
         "ip link set eth0 up; ip link set peer0 up; ip route add default via 192.0.2.2");
   }
-  /// A run of 2.5 s. Its time limits are longer than any outage of these tests.
+  /// A run of 5 s. Its time limits are longer than any outage of these tests.
   std::vector<std::string> PacedRun(std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--pace", "20"});
+    more.insert(more.end(), {"--pace", "10"});
     return Run(more);
   }
   /// Waits until the log of the run has grown by some fifty steps.

@@ -43,7 +43,7 @@ class DeafRoleTest : public NetworkTest {
 TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  constexpr int kSeconds = 7;
+  constexpr int kSeconds = 14;
   Background run(machine.On(RealtimeRun(kSeconds, {})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
@@ -73,9 +73,9 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
 TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  // The ACC counts as deaf after some 3 s. On a busy machine this may take two seconds more, so the
-  // run lasts 6 s.
-  Background run(machine.On(RealtimeRun(6, {"--restarts", "0"})));
+  // The ACC counts as deaf after some 3 s. On a busy machine this may take some seconds more, so
+  // the run lasts 10 s.
+  Background run(machine.On(RealtimeRun(10, {"--restarts", "0"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   machine.LoseChannel("HOST_EGO");
@@ -90,8 +90,8 @@ TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   // The driver counts as deaf after some 3 s, and then receives TRUTH again. On a busy machine each
-  // of these two changes may take a second more.
-  constexpr int kSeconds = 8;
+  // of these two changes may take three seconds more.
+  constexpr int kSeconds = 12;
   Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));

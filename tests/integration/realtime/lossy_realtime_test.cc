@@ -140,7 +140,7 @@ TEST_F(LossyNetworkInRealtimeTest, NearTheEndOfTheRunSendsNoRecorderAwayBeforeSt
 
 TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
-  Background run(RealtimeRun(4 * kLossyRunRate_hz));
+  Background run(RealtimeRun(8 * kLossyRunRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kLossyRunRate_hz)) << run.Err();
   // A second has 50 steps. The recorder asks only for the last 32 steps again, so the log lacks
   // steps.

@@ -11,6 +11,7 @@
 
 #include "services/graph.h"
 #include "services/runtime/transport/udpm/fresh_url.h"
+#include "tests/integration/realtime/not_whole.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -51,7 +52,10 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   std::vector<std::string> command = WithoutPriority();
   for (const std::string& word : Realtime(folder)) command.push_back(word);
   const Outcome run = RunCommand(command);
-  ASSERT_EQ(run.code, 0) << run.err;
+  if (run.code != 0) {  // on a busy machine the recorder may lack messages without the priority
+    ASSERT_EQ(run.code, kFailed) << run.err;
+    ASSERT_THAT(run.err, HasSubstr(kNotWhole));
+  }
   EXPECT_THAT(run.err,
               HasSubstr("warning: without real-time priority: world, radar, lidar, fusion, "
                         "acc, driver, arbitrator, follower, recorder. On a busy machine "
