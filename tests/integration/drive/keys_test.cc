@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -68,10 +69,18 @@ TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
   program.Type(" ");
   ASSERT_GE(commands.WaitFor([&] { return commands.host.mode == arbitration_t::RECOVERING; }), 0);
   // THEN the arrow up accelerates the host more than released pedals, and the arrow down brakes it
-  program.Type("\x1b[A");
-  EXPECT_GE(commands.WaitFor([&] { return commands.host.acceleration_mps2 > -0.3; }), 0);
-  program.Type("\x1b[B");
-  EXPECT_GE(commands.WaitFor([&] { return commands.host.acceleration_mps2 < -0.8; }), 0);
+  // On a busy machine a single tap of 0.12 s may end too early for the thread of the seat.
+  const auto tap_until = [&](const char* key, const std::function<bool()>& holds) {
+    constexpr int kTaps = 5;
+    double waited_s = -1;
+    for (int i = 0; i < kTaps && waited_s < 0; ++i) {
+      program.Type(key);
+      waited_s = commands.WaitFor(holds, milliseconds(1000));
+    }
+    return waited_s >= 0;
+  };
+  EXPECT_TRUE(tap_until("\x1b[A", [&] { return commands.host.acceleration_mps2 > -0.3; }));
+  EXPECT_TRUE(tap_until("\x1b[B", [&] { return commands.host.acceleration_mps2 < -0.8; }));
   EXPECT_EQ(program.Wait(), 0) << program.text();
   EXPECT_TRUE(program.IsAsBefore());
   const auto inputs = Inputs();

@@ -37,7 +37,7 @@ nlohmann::json EventsOf(const std::string& script, Words settings) {
   // On a busy machine the commands of the ACC may come late. These tests are not about late
   // commands, so an input counts as LOST only after 100 periods.
   settings.emplace_back("/health/lost_periods=100");
-  RealtimeRun run(kDriveScenario, 350, 1, settings);
+  RealtimeRun run(kDriveScenario, 600, 1, settings);
   const Background seat(SeatCommand(run.url(), script));
   run.Finish();
   const auto replay = VerbOf({"replay", run.log(), "--role", "driver", "--json"});
@@ -46,7 +46,7 @@ nlohmann::json EventsOf(const std::string& script, Words settings) {
 }
 
 // The person brakes from 2 s to 3 s, and gives back at 4.5 s (scripted_seat.cc). The fog begins
-// after 15 s, so the arbitrator sends no request in these runs of 7 s.
+// after 15 s, so the arbitrator sends no request in these runs of 12 s.
 constexpr const char* kBrakes = "0 0 0 0 1; 2 0 0.6 0 1; 3 0 0 0 1; 4.5 0 0 2 1";
 
 TEST(OverrideInRealtimeTest, ABrakeTakesOverWithoutARequestUntilThePersonGivesBack) {

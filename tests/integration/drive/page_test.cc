@@ -36,7 +36,7 @@ std::vector<std::string> DriveAtPage(const std::string& log, std::vector<std::st
 TEST(DriveAtPageInRealtimeTest, TheRunBeginsWithThePersonAndIsDrivenByTheirInputs) {
   const ScratchFolder folder;
   const std::string log = folder.File("drive.lcm");
-  Background run(DriveAtPage(log, {"--set", "/steps=200"}));
+  Background run(DriveAtPage(log, {"--set", "/steps=500"}));
   ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
   EXPECT_THAT(run.Err(), HasSubstr("/drive\n"));
   const PagePerson person(PortIn(run.Err()));

@@ -77,7 +77,7 @@ class DrivenRunInRealtimeTest : public testing::Test {
   }
 
   ScratchFolder folder_;
-  RealtimeRun run_{kDriveScenario, 200, 1, AlwaysAsked()};
+  RealtimeRun run_{kDriveScenario, 400, 1, AlwaysAsked()};
   nlohmann::json result_;
 };
 
@@ -129,8 +129,8 @@ TEST_F(DrivenRunInRealtimeTest, SaysThatThePersonHasAcknowledged) {
   EXPECT_THAT(texts, testing::Contains("transfer to the human"));
   ASSERT_EQ(events["requests"].size(), 1U);
   // The seat's script begins at the first TRUTH that the seat receives. From then on the button is
-  // pressed.
-  EXPECT_LT(events["requests"][0]["acknowledged_s"], 2.5);
+  // pressed. On a busy machine the seat receives it late.
+  EXPECT_LT(events["requests"][0]["acknowledged_s"], 5);
   const Outcome drawn =
       RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--set",
                   "/arbitrator/take_over/mode=requested", "--log", folder_.File("drawn.lcm")});

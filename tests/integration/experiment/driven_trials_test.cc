@@ -102,10 +102,10 @@ std::size_t CountOf(const std::string& text, const std::string& all) {
   return count;
 }
 
-/// One participant; each run has 250 steps of 0.02 s.
+/// One participant; each run has 400 steps of 0.02 s.
 class DrivenTrialsInRealtimeTest : public ::testing::Test {
  protected:
-  DrivenTrialsInRealtimeTest() { WritePlan(250); }
+  DrivenTrialsInRealtimeTest() { WritePlan(400); }
 
   /// @param by_person the changes of the scenario in the conditions in which the person drives
   void WritePlan(int steps, std::vector<std::string> by_person = AlwaysAskedAtAPage()) const {

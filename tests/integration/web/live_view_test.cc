@@ -131,21 +131,29 @@ TEST(LiveViewTest, GivesALateClientTheRunAndItsHistory) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   WebClient client(viewed.port());
   EXPECT_EQ(ReceiveOp(client, "run")["steps"], 60);
-  client.Send(R"({"op":"history","id":5})");
+  // On a busy machine the last messages of the run may come to the program, and to the client, only
+  // now. Then the client asks again.
+  constexpr std::size_t kMessages = 60 * 9;
+  constexpr int kTries = 10;
   Got got;
   std::int64_t messages = 0;
-  while (true) {
-    const WebFrame frame = client.Receive(kPatience);
-    got.Take(frame);
-    if (KindOf(frame) == 1) messages += std::ssize(MessagesOf(frame));
-    if (frame.binary) continue;
-    const json text = json::parse(frame.bytes);
-    if (text["op"] != "history") continue;
-    EXPECT_EQ(text["id"], 5);
-    EXPECT_EQ(text["messages"], messages);
-    break;
+  std::int64_t said = -1;
+  for (int id = 5; id < 5 + kTries && (said != messages || got.size() != kMessages); ++id) {
+    client.Send(json{{"op", "history"}, {"id", id}}.dump());
+    got = Got();
+    messages = 0;
+    for (json text = json::object(); text.value("op", "") != "history";) {
+      const WebFrame frame = client.Receive(kPatience);
+      got.Take(frame);
+      if (KindOf(frame) == 1) messages += std::ssize(MessagesOf(frame));
+      text = frame.binary ? json::object() : json::parse(frame.bytes);
+      if (text.value("op", "") != "history") continue;
+      EXPECT_EQ(text["id"], id);
+      said = text["messages"];
+    }
   }
-  EXPECT_EQ(CompareWithLog(got, folder.File("run.lcm")), 60U * 9);
+  EXPECT_EQ(said, messages);
+  EXPECT_EQ(CompareWithLog(got, folder.File("run.lcm")), kMessages);
 }
 
 TEST(LiveViewTest, TellsTheScenarioToAViewerThatStartsLate) {

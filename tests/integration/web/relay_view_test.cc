@@ -80,7 +80,12 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
   const asio::ip::tcp::acceptor silent(context, {asio::ip::address_v4::loopback(), relay.port()});
   // If each try to connect blocked the program for 200 ms, most answers would come only after the
   // try.
-  EXPECT_LT(median_s(), with_relay_s + 0.03);
+  // The load of the machine may change meanwhile, so the test measures again. A program that is
+  // blocked is slower in each round.
+  constexpr int kRounds = 5;
+  double slower_s = 1;
+  for (int i = 0; i < kRounds && slower_s >= 0.03; ++i) slower_s = median_s() - with_relay_s;
+  EXPECT_LT(slower_s, 0.03);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ json LogAt(std::uint16_t port) {
 TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
-  Background run(RunAndView(Program("fogline"), log, {"--set", "/steps=60", "--pace", "1"}));
+  Background run(RunAndView(Program("fogline"), log, {"--set", "/steps=60", "--pace", "0.5"}));
   ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
   ASSERT_TRUE(run.WaitForErr("/\n", kPatience));
   const std::uint16_t port = PortIn(run.Err());

@@ -28,6 +28,7 @@ TEST_F(SeatPageTest, APersonStaysInTheRunWhenTheNetworkGetsAnotherOne) {
   network_.SendRun(kSeatRun);
   network_.SendTruth(7);
   network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
+  network_.SendTruth(7);  // on a busy machine the run counts as silent otherwise
   network_.SendRun(kOtherRun);
   network_.SendTruth(8, kOtherRun);
   WaitForTruthOf(viewer, kOtherRun);

@@ -179,7 +179,12 @@ TEST_F(SeatPageTest, APageThatIsOnlyOpenGivesTheSeatToThePersonAtAnother) {
   second.Send(Braking(0));
   network_.Hear(IsThere);
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "yours");
-  EXPECT_EQ(ReceiveOp(*first, "seat")["state"], "taken");
+  // On a busy machine the first page, which sends nothing, may have lost the seat before.
+  nlohmann::json told;
+  do {
+    told = ReceiveOp(*first, "seat");
+  } while (told["state"] == "lost");
+  EXPECT_EQ(told["state"], "taken");
   // The end of a page without the seat changes nothing.
   first.reset();
   second.Send(Braking(1));
