@@ -292,26 +292,32 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
 
 TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const Elsewhere elsewhere;
-  runtime::Bus bus(runtime::FreshMulticastUrl());
-  Heard<driver_command_t> commands(bus);
-  // GIVEN a run at real speed that is under way
-  ListeningDriver driver(elsewhere.BareDriver(), bus.url());
-  auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
-  command.insert(command.end(), {"--pace", "1", "--stall-timeout", "6"});
-  Background run(command);
-  EXPECT_TRUE(
-      run.WaitForErr("waiting for the driver (60 s): start it with: fogline-driver --lcm-url "));
-  while (commands.WaitForNext().header.step < 10) {
+  std::string err;
+  // At the end of the run, a busy machine may have given another role no processor for a second.
+  // Then this role is named, and the test tries again.
+  constexpr int kTries = 3;
+  for (int i = 0; i < kTries && (i == 0 || err.find("is silent (last heard") != err.npos); ++i) {
+    runtime::Bus bus(runtime::FreshMulticastUrl());
+    Heard<driver_command_t> commands(bus);
+    // GIVEN a run at real speed that is under way
+    ListeningDriver driver(elsewhere.BareDriver(), bus.url());
+    auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
+    command.insert(command.end(), {"--force", "--pace", "1", "--stall-timeout", "6"});
+    Background run(command);
+    EXPECT_TRUE(
+        run.WaitForErr("waiting for the driver (60 s): start it with: fogline-driver --lcm-url "));
+    while (commands.WaitForNext().header.step < 10) {
+    }
+    // WHEN the driver is killed
+    driver.process().Signal(SIGKILL);
+    // THEN the run ends and says in one line which role waited for the driver, and in which step
+    EXPECT_EQ(run.Wait(), 3);
+    err = run.Err();
   }
-  // WHEN the driver is killed
-  driver.process().Signal(SIGKILL);
-  // THEN the run ends and says in one line which role waited for the driver, and in which step
-  EXPECT_EQ(run.Wait(), 3);
   static const std::regex kLine(
       "fogline run: error: step ([0-9]+): arbitrator waits for DRIVER_COMMAND from driver "
       "\\(last heard: step ([0-9]+), [0-9]+\\.[0-9] s ago\\)\n");
   std::smatch line;
-  const std::string err = run.Err();
   ASSERT_TRUE(std::regex_search(err, line, kLine)) << err;
   EXPECT_EQ(std::stoi(line[1]), std::stoi(line[2]) + 1);
   // AND the log has the complete steps

@@ -60,7 +60,8 @@ TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
   // leaves such starts out.
   const Outcome outcome =
       RunCommand({Program("fogline-bench"), "--quick", "--rounds", "5", "--json", "--against",
-                  folder.path(), "--only", "against-sweep", "--only", "against-start"});
+                  folder.path(), "--only", "against-sweep", "--only", "against-start"},
+                 2 * kPatience);
   EXPECT_LE(outcome.code, 1) << outcome.err;  // code 1: one of two equal programs was slower
   const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
   ASSERT_EQ(comparisons.size(), 2U) << outcome.out;

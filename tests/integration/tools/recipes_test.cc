@@ -79,8 +79,8 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
   std::string lines = Recipe("lcm-logplayer");
   char port[8];
   std::snprintf(port, sizeof(port), "%04X", std::stoi(port_));
-  lines = Replaced(lines, "lcm-logplayer",
-                   "until [ $(grep -c ':" + std::string(port) +
+  lines = Replaced(lines, "\nlcm-logplayer",
+                   "\nuntil [ $(grep -c ':" + std::string(port) +
                        " ' /proc/net/udp) -ge 4 ]; do sleep 0.02; done\nlcm-logplayer");
   // AND a speed at which lcm-logger loses fewer messages on a busy machine
   lines = Replaced(lines, "--speed=4", "--speed=1");

@@ -76,7 +76,8 @@ TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor
       {"env", "PATH=" + folder.path().string() + ":" + std::getenv("PATH"), "tools/build", "all"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "building: 1 of 2\nb.cc:1: error: mistake\n");
+  EXPECT_THAT(outcome.err,
+              testing::MatchesRegex("building: 1 of 2[^\n]*\nb.cc:1: error: mistake\n"));
 }
 
 TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
@@ -85,12 +86,14 @@ TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
        "printf '@1 40 a.cc\\n@20 40 b.cc\\nb.cc:1: error\\n@40 40\\n' | tools/progress building"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out, "b.cc:1: error\n");
-  EXPECT_EQ(outcome.err, "building: 1 of 40\nbuilding: 20 of 40\nbuilding: 40 of 40\n");
+  // A time left may follow on a busy machine.
+  EXPECT_THAT(outcome.err,
+              testing::MatchesRegex(
+                  "building: 1 of 40[^\n]*\nbuilding: 20 of 40[^\n]*\nbuilding: 40 of 40[^\n]*\n"));
 }
 
-// The time left is known after two seconds.
-constexpr const char* kHalfOfIt =
-    "{ echo @1 40; sleep 2.1; echo @20 40; } | tools/progress building";
+// The time left is known after two seconds. On a busy machine the reader may start later.
+constexpr const char* kHalfOfIt = "{ echo @1 40; sleep 4; echo @20 40; } | tools/progress building";
 
 TEST(ToolsTest, SayHowLongLongWorkTakesYet) {
   const Outcome outcome = RunCommand({"bash", "-c", kHalfOfIt});

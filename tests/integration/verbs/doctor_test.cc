@@ -190,9 +190,11 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   std::string heard;
   do {  // doctor listens for a second. A busy machine may give a role no processor for this time
     doctor = Doctor(lab[1], kEverywhere);
-    ASSERT_EQ(doctor.code, 0) << doctor.out << doctor.err;
+    ASSERT_LE(doctor.code, 1) << doctor.out << doctor.err;
     heard = Find(json::parse(doctor.out)["findings"], "check", "other_runs")["what"];
-  } while (std::ranges::count(heard, '@') < std::ssize(kRoles) && Clock::now() < end);
+  } while ((doctor.code != 0 || std::ranges::count(heard, '@') < std::ssize(kRoles)) &&
+           Clock::now() < end);
+  EXPECT_EQ(doctor.code, 0) << doctor.out << doctor.err;
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
   // doctor names the processes of this machine on all networks.
   EXPECT_THAT(doctor.out,

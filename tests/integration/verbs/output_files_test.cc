@@ -1,6 +1,5 @@
 // Results are written to files, links, pipes and devices.
 #include <fcntl.h>
-#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,6 +16,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/process/poll.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -216,18 +216,18 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   Background sweep({Program("fogline"), "sweep", "scenario/paper.json", "--set", "/steps=20",
                     "--seeds", "1:100000", "--jobs", "2", "--out", pipe});
-  // Waits until the pipe has many bytes and gets no more.
-  constexpr std::chrono::milliseconds kPause(300);
-  int bytes = 0;
+  // Waits until the pipe has no room. Then the sweep waits in its next write.
+  const int writer = open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  for (int before = -1; bytes < 32'768 || bytes != before; std::this_thread::sleep_for(kPause)) {
+  while (PollFor(writer, POLLOUT, Duration::zero()) != 0) {
     ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();
-    before = bytes;
-    ASSERT_EQ(ioctl(reader, FIONREAD, &bytes), 0);
+    std::this_thread::sleep_for(milliseconds(20));
   }
+  std::this_thread::sleep_for(milliseconds(1000));  // the sweep comes to this write
   sweep.Signal(SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
   EXPECT_EQ(sweep.Err(), "fogline sweep: interrupted in " + pipe + "\n");
+  close(writer);
   close(reader);
 }
 

@@ -28,7 +28,7 @@ class Top {
   /// Waits until top shows everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
     const TimePoint end = Clock::now() + kPatience;
-    while (process_.Out().find("\"" + mark + "\"") == std::string::npos) {
+    while (Complete().find("\"" + mark + "\"") == std::string::npos) {
       if (Clock::now() > end) return false;
       bus_.Publish(mark, std::vector<std::uint8_t>{0});
       bus_.Wait(milliseconds(10));
@@ -37,13 +37,20 @@ class Top {
   }
   /// The last document that is complete.
   nlohmann::json Last() const {
-    std::string out = process_.Out();
-    out.erase(out.rfind('\n'));
+    const std::string out = Complete();
     const std::size_t begin = out.rfind('\n');
     return nlohmann::json::parse(begin == std::string::npos ? out : out.substr(begin + 1));
   }
 
  private:
+  /// The documents that are complete, without the last end of line.
+  std::string Complete() const {
+    std::string out = process_.Out();
+    const std::size_t end = out.rfind('\n');
+    out.erase(end == std::string::npos ? 0 : end);
+    return out;
+  }
+
   runtime::Bus& bus_;
   Background process_;
 };
