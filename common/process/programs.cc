@@ -17,9 +17,8 @@ std::filesystem::path FindProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    // An empty folder is the folder of the process.
     std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / name;
-    if (IsExecutable(program)) return program;
+    if (std::filesystem::is_regular_file(program) && IsExecutable(program)) return program;
   }
   return {};
 }

@@ -12,7 +12,8 @@ std::filesystem::path OwnFolder();
 /// Whether this user may execute a file.
 bool IsExecutable(const std::filesystem::path& file);
 
-/// Path of a program as the shell finds it; "" if it is not in $PATH.
+/// Path of a program in the folders of $PATH, the first one first; "" if none has it. An empty
+/// folder is the folder of the process.
 std::filesystem::path FindProgram(const std::string& name);
 
 }  // namespace fogline

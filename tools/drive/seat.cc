@@ -8,7 +8,7 @@
 
 #include "common/process/console.h"
 #include "common/process/poll.h"
-#include "common/process/this_process.h"
+#include "common/process/priority.h"
 #include "services/graph.h"
 #include "services/host_modes.h"
 #include "services/runtime/seat/seat_instance.h"

@@ -1,13 +1,12 @@
 #include "tools/runner/role_news.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "common/process/priority.h"
 #include "common/process/this_process.h"
 #include "services/runtime/node/runner_watch.h"
 
@@ -24,12 +23,6 @@ using Phase = runtime::RunCoordinator::Phase;
 
 std::string ProcessOf(const status_t& status) {
   return fmt::format("{} (pid {} on {})", status.role, status.pid, status.host);
-}
-
-/// Whether the kernel runs a process of this machine before ordinary processes.
-bool HasPriority(pid_t pid) {
-  const int policy = sched_getscheduler(pid);
-  return policy >= 0 && (policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO;
 }
 
 }  // namespace
@@ -108,9 +101,9 @@ bool PriorityWatch::Look(const runtime::RunCoordinator& coordinator, TimePoint n
   for (const RoleInfo& info : kRoles) {
     const auto& status = coordinator.member(info.role).status;
     all_run = all_run && status && status->state == status_t::RUNNING;
-    auto& list = !status || status->host != host ? found.unknown
-                 : HasPriority(status->pid)      ? found.granted
-                                                 : found.refused;
+    auto& list = !status || status->host != host        ? found.unknown
+                 : ThreadsBeforeOthers(status->pid) > 0 ? found.granted
+                                                        : found.refused;
     list.emplace_back(info.name);
   }
   if (!all_run && coordinator.HeldAgainst(since_, now) < kPriorityIsKnown) return false;

@@ -12,6 +12,7 @@
 #include "common/interrupt.h"
 #include "common/own_pauses.h"
 #include "common/process/console.h"
+#include "common/process/priority.h"
 #include "common/process/this_process.h"
 #include "services/runtime/discovery/run_seeker.h"
 #include "services/runtime/discovery/waiting_roles.h"

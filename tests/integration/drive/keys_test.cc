@@ -1,7 +1,5 @@
 // `fogline drive --keys` in a pseudo-terminal. The test types at the other end of the
 // pseudo-terminal.
-#include <sched.h>
-
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -14,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "common/clock.h"
-#include "common/process/this_process.h"
+#include "common/process/priority.h"
 #include "services/log/driver_inputs.h"
 #include "services/log/event_log.h"
 #include "services/log/run_log.h"
@@ -68,8 +66,9 @@ TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
   // WHEN the person takes over with the space bar
   program.Type(" ");
   ASSERT_GE(commands.WaitFor([&] { return commands.host.mode == arbitration_t::RECOVERING; }), 0);
-  // THEN the arrow up accelerates the host more than released pedals, and the arrow down brakes it
-  // On a busy machine a single tap of 0.12 s may end too early for the thread of the seat.
+  // THEN the arrow up accelerates the host more than released pedals, and the arrow down brakes it.
+  // On a busy machine a single tap of 0.12 s may end too early for the thread of the seat, so the
+  // test repeats it
   const auto tap_until = [&](const char* key, const std::function<bool()>& holds) {
     constexpr int kTaps = 5;
     double waited_s = -1;
@@ -98,17 +97,6 @@ TEST_F(KeysInRealtimeTest, APersonWhoIsNotAskedIsToldWhoDrives) {
     return program.text().find(">>> you drive") != std::string::npos;
   })) << program.text();
   EXPECT_EQ(program.Wait(), 0) << program.text();
-}
-
-/// The number of threads of a process that the kernel runs before all ordinary threads.
-int ThreadsBeforeOthers(pid_t process) {
-  int threads = 0;
-  for (const auto& task :
-       std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
-    const int policy = sched_getscheduler(std::stoi(task.path().filename()));
-    threads += (policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO ? 1 : 0;
-  }
-  return threads;
 }
 
 TEST_F(KeysInRealtimeTest, TheThreadOfTheSeatRunsBeforeOtherThreads) {

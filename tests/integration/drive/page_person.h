@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
-#include "common/process/this_process.h"
+#include "common/process/priority.h"
 #include "tests/support/command.h"
 #include "tests/support/web_client.h"
 

@@ -3,16 +3,19 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "common/process/priority.h"
 #include "services/log/event_log.h"
 #include "services/log/remains.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 
 namespace fogline::test {
 namespace {
@@ -161,6 +164,25 @@ TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
   // recorded sensors, so their tracks stay near each other.
   EXPECT_GT(live["track"]["compared_steps"], 200);
   EXPECT_LT(live["track"]["distance_m"]["rms"], 0.1);
+}
+
+TEST_F(LiveReplayInRealtimeTest, RunsTheThreadsOfItsRolesBeforeOthersAndSaysSo) {
+  bool granted = false;
+  std::thread([&granted] { granted = RunThreadBeforeOthers(1); }).join();
+  if (!granted) return MachineLacks("the right to real-time priority");
+  Background program({Program("fogline"), "replay", log_, "--live", "--realtime", "--speed", "2",
+                      "--log", live_, "--json", "--quiet"});
+  // THEN radar and LiDAR have a thread each, and another one for the backlog of their bus
+  constexpr int kThreads = 4;
+  int threads = 0;
+  while (threads < kThreads && IsAlive(program.pid())) {
+    threads = ThreadsBeforeOthers(program.pid());
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  EXPECT_EQ(threads, kThreads);
+  ASSERT_EQ(program.Wait(), 0) << program.Err();
+  const auto live = nlohmann::json::parse(program.Out());
+  EXPECT_THAT(live["realtime"]["priority"]["refused"], ::testing::IsEmpty());
 }
 
 }  // namespace

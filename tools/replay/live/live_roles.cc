@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "common/process/this_process.h"
+#include "common/process/priority.h"
 #include "services/runtime/transport/bus.h"
 
 namespace fogline::replay {
@@ -48,7 +48,8 @@ void LiveRoles::Join(std::int64_t run_id, const std::string& url) {
 }
 
 void LiveRoles::TakePart(Part& part) const {
-  // The thread starts one that keeps the backlog of its bus.
+  // The thread starts one that keeps the backlog of its bus. The runner reports a refusal of the
+  // kernel for the roles.
   if (realtime_) RunThreadBeforeOthers(kPriority, /*with_its_threads=*/true);
   runtime::Node& node = part.node->node();
   try {

@@ -45,6 +45,8 @@ TEST(ProgramsTest, FindsTheFirstExecutableFileInPath) {
     EXPECT_EQ(FindProgram("tool"), tool);
   }
   EXPECT_EQ(FindProgram("other"), "");
+  std::filesystem::create_directory(folder.path() / "first/other");
+  EXPECT_EQ(FindProgram("other"), "") << "a folder is no program";
 }
 
 }  // namespace
