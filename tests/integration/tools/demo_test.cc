@@ -1,5 +1,5 @@
-// tools/demo builds what it needs, and its last lines name commands and files that exist. Here it
-// uses the programs of this build, and installs and builds nothing.
+// tools/demo asks for what it needs, and its last lines name commands and files that exist. Here it
+// uses the programs of this build, and installs and compiles nothing.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -21,21 +21,26 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A folder in which tools/demo runs. The folder's own tools/setup does nothing, and its own
-/// tools/build only makes links to the programs of this build. Both write their calls into the file
-/// `calls`.
+/// A folder in which tools/demo runs. The folder's own tools/setup installs nothing, and its own
+/// tools/build only makes a link to the programs of this build. Both write their calls into the
+/// file `calls`.
 class DemoFolder {
  public:
   DemoFolder() {
     const std::filesystem::path tools = folder_.path() / "tools";
     std::filesystem::create_directory(tools);
-    std::filesystem::copy_file(SourceDirectory() / "tools/demo", tools / "demo");
+    for (const char* script : {"demo", "lock"}) {
+      std::filesystem::copy_file(SourceDirectory() / "tools" / script, tools / script);
+    }
     Write("setup", "");
-    Write("build", "mkdir -p build; ln -sfn " + ProgramDirectory().string() + " build/bin");
+    Write("build", BuildCommands());
     std::filesystem::create_directory_symlink(SourceDirectory() / "scenario",
                                               folder_.path() / "scenario");
   }
 
+  static std::string BuildCommands() {
+    return "mkdir -p build; ln -sfn " + ProgramDirectory().string() + " build/bin";
+  }
   /// Makes tools/NAME, which writes its call and then executes `commands`.
   void Write(const std::string& name, const std::string& commands) const {
     const std::filesystem::path script = folder_.path() / "tools" / name;
@@ -77,17 +82,23 @@ TEST(DemoTest, BuildsOnlyItsPartsAndSaysAtFirstThatThisTakesLong) {
 
 TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
   const DemoFolder folder;
-  folder.Write("setup", "until [ -e go ]; do sleep 0.05; done");
+  const std::string link = folder.BuildCommands();
+  folder.Write("build", link + "; until [ -e go ]; do sleep 0.05; done");
   Background first(folder.Typed("tools/demo"));
-  ASSERT_TRUE(ComesToHave("tools/setup run\n", folder.path() / "calls"));
+  ASSERT_TRUE(ComesToHave("tools/build fogline_demo\n", folder.path() / "calls"));
   Background second(folder.Typed("tools/demo"));
   EXPECT_TRUE(second.WaitForErr("waiting for another tools/demo in this folder ..."));
-  EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\n");
+  const std::string calls = "tools/setup run\ntools/build fogline_demo\n";
+  EXPECT_EQ(Content(folder.path() / "calls"), calls);
+  // The second one begins when the report of the first one is made.
+  folder.Write("setup", "[ ! -e logs/demo/report.html ] || echo after the report >>calls");
   std::ofstream(folder.path() / "go") << "";
   for (Background* demo : {&first, &second}) {
     EXPECT_EQ(demo->Wait(), 0) << demo->Err();
     EXPECT_THAT(demo->Out(), HasSubstr("report: logs/demo/report.html"));
   }
+  EXPECT_EQ(Content(folder.path() / "calls"),
+            calls + "tools/setup run\nafter the report\ntools/build fogline_demo\n");
 }
 
 TEST(DemoTest, NamesItsFilesAndTheCommandThatShowsARunInABrowser) {

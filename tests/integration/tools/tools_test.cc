@@ -63,21 +63,72 @@ TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   }
 }
 
+/// A folder with tools/build, which is configured, and with its own `ninja`.
+class BuildFolder {
+ public:
+  explicit BuildFolder(const std::string& ninja) {
+    for (const char* part : {"tools", "build", "bin"}) {
+      std::filesystem::create_directory(folder_.path() / part);
+    }
+    for (const char* script : {"build", "lock", "progress"}) {
+      const std::filesystem::path source = std::filesystem::path("tools") / script;
+      std::filesystem::copy_file(SourceDirectory() / source, folder_.path() / source);
+    }
+    std::ofstream(folder_.path() / "build/build.ninja") << "";
+    std::ofstream(folder_.path() / "bin/ninja") << "#!/bin/sh\n" << ninja << "\n";
+    std::filesystem::permissions(folder_.path() / "bin/ninja", std::filesystem::perms::owner_all);
+  }
+  /// Calls tools/build for all targets.
+  std::vector<std::string> Command() const {
+    return {"env",
+            "-C",
+            folder_.path().string(),
+            "PATH=" + folder_.File("bin") + ":" + std::getenv("PATH"),
+            "tools/build",
+            "all"};
+  }
+  std::filesystem::path path() const { return folder_.path(); }
+
+ private:
+  ScratchFolder folder_;
+};
+
 TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor) {
   // GIVEN a ninja that begins the line of its first command as it is told, and then reports an
   // error of the compiler
-  const ScratchFolder folder;
-  const std::string ninja = folder.File("ninja");
-  std::ofstream(ninja) << "#!/bin/sh\n"
-                       << "echo \"$NINJA_STATUS\" | sed 's/%f/1/; s/%t/2/; s/$/a.o/'\n"
-                       << "echo 'b.cc:1: error: mistake'\nexit 1\n";
-  std::filesystem::permissions(ninja, std::filesystem::perms::owner_all);
-  const Outcome outcome = RunCommand(
-      {"env", "PATH=" + folder.path().string() + ":" + std::getenv("PATH"), "tools/build", "all"});
+  const BuildFolder folder(
+      "echo \"$NINJA_STATUS\" | sed 's/%f/1/; s/%t/2/; s/$/a.o/'\n"
+      "echo 'b.cc:1: error: mistake'\nexit 1");
+  const Outcome outcome = RunCommand(folder.Command());
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "");
+  // On a busy machine the time left may follow.
   EXPECT_THAT(outcome.err,
               testing::MatchesRegex("building: 1 of 2[^\n]*\nb.cc:1: error: mistake\n"));
+}
+
+TEST(ToolsTest, BuildsOfAFolderRunOneAfterTheOther) {
+  const BuildFolder folder(
+      "echo begins >>calls; until [ -e go ]; do sleep 0.05; done; echo ends >>calls");
+  const std::filesystem::path calls = folder.path() / "calls";
+  Background first(folder.Command());
+  ASSERT_TRUE(ComesToHave("begins\n", calls)) << first.Err();
+  Background second(folder.Command());
+  EXPECT_TRUE(second.WaitForErr("waiting for another tools/build in this folder ..."));
+  EXPECT_EQ(Content(calls), "begins\n");
+  std::ofstream(folder.path() / "go") << "";
+  EXPECT_EQ(first.Wait(), 0) << first.Err();
+  EXPECT_EQ(second.Wait(), 0) << second.Err();
+  EXPECT_EQ(Content(calls), "begins\nends\nbegins\nends\n");
+}
+
+TEST(ToolsTest, BuildGoesOnWhereThereIsNoFlock) {
+  const BuildFolder folder("exit 0");
+  std::ofstream(folder.path() / "bin/flock") << "#!/bin/sh\nexit 127\n";
+  std::filesystem::permissions(folder.path() / "bin/flock", std::filesystem::perms::owner_all);
+  const Outcome outcome = RunCommand(folder.Command());
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
 }
 
 TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
