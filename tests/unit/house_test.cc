@@ -53,7 +53,8 @@ std::vector<Room> WithRoles(std::vector<Room> rooms) {
 }
 
 /// A file may include files of its own room and of rooms before it, and a library may link
-/// libraries of rooms before it. NAME_main.cc is a program, so it may include files of all rooms.
+/// libraries of rooms before it. But a role may use no other role, with one exception
+/// (kRoleOfRole). NAME_main.cc is a program, so it may include files of all rooms.
 const std::vector<Room> kRooms = WithRoles({
     {"common", "", "knows nothing of Fogline"},
     {"common/process", "", "this process: its console, what it waits for, what it takes"},
@@ -284,7 +285,10 @@ std::vector<std::string> ForbiddenLinks(const Links& links) {
     for (const std::string& linked : all_linked) {
       const auto place = links.places.find(linked);
       const std::size_t first = *links.places.at(library).begin();
-      if (place != links.places.end() && *place->second.rbegin() < first) continue;
+      const bool of_role = place != links.places.end() && first < kRooms.size() &&
+                           *place->second.rbegin() < kRooms.size() &&
+                           IsOtherRole(kRooms[first], kRooms[*place->second.rbegin()]);
+      if (place != links.places.end() && *place->second.rbegin() < first && !of_role) continue;
       forbidden.push_back(library + " links " + linked);
     }
   }
@@ -319,6 +323,14 @@ TEST(HouseTest, FindsALinkToALibraryWithOneFolderTooFarBehind) {
   EXPECT_THAT(ForbiddenLinks(ReadLinks(metrics + runtime)), IsEmpty());
   EXPECT_THAT(ForbiddenLinks(ReadLinks(metrics + runtime + ",services/runtime/transport")),
               ElementsAre("fogline_metrics links fogline_runtime"));
+}
+
+TEST(HouseTest, FindsALinkOfARoleToAnotherRole) {
+  const std::string acc = "fogline_acc services/acc\n";
+  EXPECT_THAT(ForbiddenLinks(ReadLinks(acc + "fogline_follower services/follower fogline_acc\n")),
+              IsEmpty());
+  EXPECT_THAT(ForbiddenLinks(ReadLinks(acc + "fogline_world services/world fogline_acc\n")),
+              ElementsAre("fogline_world links fogline_acc"));
 }
 
 TEST(HouseTest, NoFolderHasMoreThan20Files) {

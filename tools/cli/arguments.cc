@@ -2,6 +2,7 @@
 
 #include <system_error>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.h"

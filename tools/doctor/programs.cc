@@ -60,8 +60,8 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
 
 /// First line of the output of each role's program when it is called with --version.
 std::map<Role, std::string> AskVersions(const fs::path& programs) {
-  constexpr Duration kLimit =
-      milliseconds(20'000);  // for all; a busy machine starts a program in 1 s
+  // Limit for all programs together. A busy machine takes a second to start one.
+  constexpr Duration kLimit = milliseconds(20'000);
   std::map<Role, std::string> versions;
   processes::ProcessGroup group;
   for (const RoleInfo& info : kRoles) {

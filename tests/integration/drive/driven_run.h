@@ -13,12 +13,15 @@ namespace fogline::test {
 
 inline constexpr const char* kDriveScenario = "scenario/drive.json";
 
+/// On a busy machine a message of a role may be late. Tests about persons are not about late roles,
+/// so an input counts as LOST only after 100 periods.
+inline constexpr const char* kLateRolesAreNotLost = "/health/lost_periods=100";
+
 /// Settings with which the policy always wants the human. So the person is asked to take over from
-/// the first step on. On a busy machine a message of a role may be late. These tests are not about
-/// late roles, so an input counts as LOST only after 100 periods.
+/// the first step on.
 inline std::vector<std::string> AlwaysAsked() {
   return {"/person/drives=true", "/arbitrator/threshold=0", "/arbitrator/take_over/mode=requested",
-          "/health/lost_periods=100"};
+          kLateRolesAreNotLost};
 }
 
 /// AlwaysAsked() for a person at a page. On a busy machine fogline-web may take this person for

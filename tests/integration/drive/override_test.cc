@@ -34,9 +34,7 @@ Words TextsOf(const nlohmann::json& events) {
 
 /// Runs a scenario that a person drives by a script. @return what `fogline events` prints
 nlohmann::json EventsOf(const std::string& script, Words settings) {
-  // On a busy machine the commands of the ACC may come late. These tests are not about late
-  // commands, so an input counts as LOST only after 100 periods.
-  settings.emplace_back("/health/lost_periods=100");
+  settings.emplace_back(kLateRolesAreNotLost);
   RealtimeRun run(kDriveScenario, 600, 1, settings);
   const Background seat(SeatCommand(run.url(), script));
   run.Finish();

@@ -99,7 +99,7 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that is stopped for 3.5 s in a run of 8 s. A role that sends nothing for 2 s
+  // GIVEN a runner that is stopped for 3.5 s in a run of 16 s. A role that sends nothing for 2 s
   // counts as hung, but the runner must not count the time of its own pause
   WatchedRun watched({"--stall-timeout", "6"}, 1600);
   watched.WaitForStep(100);

@@ -56,27 +56,36 @@ class PacedRun {
   Background run_;
 };
 
-class KilledRoleTest : public testing::TestWithParam<RoleInfo> {};
-
-TEST_P(KilledRoleTest, EndsTheRunSoonAndByNameAndLeavesAReadableLogAndNoProcess) {
-  const std::string role(GetParam().name);
-  // GIVEN a run that is well under way
+/// Kills a role of a run that is well under way, and expects that the run ends as it must.
+/// @return the time until the end
+SteadyClock::duration ExpectAKillEndsTheRun(const std::string& role) {
   PacedRun paced;
   const std::vector<pid_t> pids = paced.Pids();
-  for (const pid_t pid : pids) ASSERT_GT(pid, 0);
-  // WHEN one of its processes is killed
+  for (const pid_t pid : pids) EXPECT_GT(pid, 0);
   kill(paced.Pid(role), SIGKILL);
   const auto killed = SteadyClock::now();
-  // THEN the run ends with code 3 within 30 s (on an idle machine within 2 s)
   EXPECT_EQ(paced.run().Wait(), 3);
-  EXPECT_LT(SteadyClock::now() - killed, std::chrono::seconds(30));
-  // AND one line names the process
+  const auto took = SteadyClock::now() - killed;
+  // One line names the process.
   const std::string err = paced.run().Err();
   EXPECT_NE(err.find("error: " + role + " (pid "), std::string::npos) << err;
   EXPECT_NE(err.find("was killed by signal 9"), std::string::npos) << err;
-  // AND no process is left, and the log is readable
+  // No process is left, and the log is readable.
   for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
   EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
+  return took;
+}
+
+class KilledRoleTest : public testing::TestWithParam<RoleInfo> {};
+
+TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAndNoProcess) {
+  const std::string role(GetParam().name);
+  constexpr std::chrono::seconds kLimit(5);
+  // A busy machine may hold up one run, but hardly three.
+  constexpr int kTries = 3;
+  SteadyClock::duration took = ExpectAKillEndsTheRun(role);
+  for (int i = 1; i < kTries && took >= kLimit; ++i) took = ExpectAKillEndsTheRun(role);
+  EXPECT_LT(took, kLimit);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryRole, KilledRoleTest, testing::ValuesIn(kRoles),

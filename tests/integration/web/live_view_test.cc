@@ -6,6 +6,7 @@
 
 #include <map>
 #include <set>
+#include <thread>
 
 #include "services/log/run_log.h"
 #include "services/log/step_order.h"
@@ -139,6 +140,7 @@ TEST(LiveViewTest, GivesALateClientTheRunAndItsHistory) {
   std::int64_t messages = 0;
   std::int64_t said = -1;
   for (int id = 5; id < 5 + kTries && (said != messages || got.size() != kMessages); ++id) {
+    if (said >= 0) std::this_thread::sleep_for(milliseconds(100));
     client.Send(json{{"op", "history"}, {"id", id}}.dump());
     got = Got();
     messages = 0;

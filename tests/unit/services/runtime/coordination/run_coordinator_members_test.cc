@@ -244,7 +244,9 @@ TEST_F(StrayWordTest, OfASuccessorCountsAsOftenAsTheRunAllowsRestarts) {
   status_t other = OtherDriver();
   while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
   // A pause of this process may count as silence for one coordinator and not for another.
-  while (once.member(Role::kDriver).replaced == 0 || never.error().empty()) {
+  constexpr int kTries = 100;
+  for (int i = 0; i < kTries && (once.member(Role::kDriver).replaced == 0 || never.error().empty());
+       ++i) {
     SpeakFor(milliseconds(100), other);
   }
   SpeakFor(milliseconds(200), other);

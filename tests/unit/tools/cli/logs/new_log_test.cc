@@ -24,7 +24,7 @@ class NewLogTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-TEST_F(NewLogTest, ReplaceALogOnlyByForce) {
+TEST_F(NewLogTest, ReplacesALogOnlyByForce) {
   runner::RunScenario(Paper(10), Direct(log_));
   const std::string before = Content(log_);
   EXPECT_EQ(Refusal(log_, false), log_ + ": error: --log: the file exists; --force replaces it");
@@ -37,7 +37,7 @@ TEST_F(NewLogTest, ReplaceALogOnlyByForce) {
   EXPECT_EQ(Content(log_), before) << "a run that never began gives the older log back";
 }
 
-TEST_F(NewLogTest, MakeANewLogAndRemoveItIfItStaysEmpty) {
+TEST_F(NewLogTest, IsMadeAndIsRemovedIfItStaysEmpty) {
   {
     const log::LogOfRun log = cli::PrepareLog(log_, false);
     EXPECT_TRUE(std::filesystem::exists(log_));
@@ -45,7 +45,7 @@ TEST_F(NewLogTest, MakeANewLogAndRemoveItIfItStaysEmpty) {
   EXPECT_FALSE(std::filesystem::exists(log_));
 }
 
-TEST_F(NewLogTest, ReplaceNothingElse) {
+TEST_F(NewLogTest, ReplacesNothingElse) {
   std::ofstream(log_) << "precious";
   EXPECT_EQ(
       Refusal(log_, true),
@@ -56,7 +56,7 @@ TEST_F(NewLogTest, ReplaceNothingElse) {
   EXPECT_THAT(Refusal(folder_.File("none/run.lcm"), false), HasSubstr("--log"));
 }
 
-TEST_F(NewLogTest, CountTheLogsOfAScenario) {
+TEST_F(NewLogTest, HasTheNextNumberOfItsScenario) {
   const std::filesystem::path here = std::filesystem::current_path();
   std::filesystem::current_path(folder_.path());
   {
