@@ -28,8 +28,8 @@ public final class SpyProbe {
         System.out.flush();
         rowsShown = rows;
       } catch (IndexOutOfBoundsException error) {
-        // lcm-spy adds rows on its LCM thread, and this row was not complete yet. The next call of
-        // look() finds the complete row.
+        // lcm-spy adds rows on its LCM thread, and this row was not complete yet. A later call of
+        // look() finds the complete row, at the latest when lcm-spy adds the next one.
       }
     }
   }
