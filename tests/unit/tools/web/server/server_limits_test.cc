@@ -29,7 +29,8 @@ using test::WebClient;
 using ::testing::HasSubstr;
 
 constexpr Duration kPatience = milliseconds(20'000);
-constexpr std::chrono::milliseconds kShort(300);
+// Other clients need less than this on a busy machine, too.
+constexpr std::chrono::milliseconds kShort(2000);
 
 /// Sends each frame back. To the frame "flood", the view answers with more bytes than may wait for
 /// a client.
@@ -236,7 +237,7 @@ TEST_F(ServerLimitsTest, TimeForARequest) {
   EXPECT_TRUE(IsClosed(idle));
   EXPECT_EQ(Counts().refused, 1);
   ExpectServes();
-  EXPECT_THAT(End(), HasSubstr("refused: sends no request within 0.3 s"));
+  EXPECT_THAT(End(), HasSubstr("refused: sends no request within 2 s"));
 }
 
 TEST_F(ServerLimitsTest, TimeToTakeAnAnswer) {
@@ -245,7 +246,7 @@ TEST_F(ServerLimitsTest, TimeToTakeAnAnswer) {
   boost::asio::write(lazy, boost::asio::buffer(GetRequest(port(), "/large")));
   EXPECT_TRUE(Waits(&ServerCounts::refused, 1));
   ExpectServes();
-  EXPECT_THAT(End(), HasSubstr("refused: does not take its answer within 0.3 s"));
+  EXPECT_THAT(End(), HasSubstr("refused: does not take its answer within 2 s"));
 }
 
 TEST_F(ServerLimitsTest, BytesThatWaitForAClient) {
@@ -328,7 +329,7 @@ TEST_F(ServerLimitsTest, TimeWithoutAnAnswerToAPing) {
   EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
   EXPECT_EQ(Counts().viewers, 0);
   ExpectServes();
-  EXPECT_THAT(End(), HasSubstr("cut off: does not answer a ping for 0.3 s"));
+  EXPECT_THAT(End(), HasSubstr("cut off: does not answer a ping for 2 s"));
 }
 
 }  // namespace
