@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <future>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -162,10 +163,14 @@ class PageDesk::Pages {
   }
 
   ~Pages() {
-    asio::post(context_, [this] {
+    // The thread may be late on a busy machine. It first sends the last state to the pages.
+    std::promise<void> stopped;
+    asio::post(context_, [&] {
       participant_->Stop();
       experimenter_->Stop();
+      stopped.set_value();
     });
+    stopped.get_future().wait();
     // The context has no more work when the last connection is closed.
     const TimePoint end = Clock::now() + kEndLimit;
     while (!context_.stopped() && Clock::now() < end) std::this_thread::sleep_for(milliseconds(5));

@@ -338,8 +338,9 @@ void BeastConnection::WriteNext() {
                          if (self->gone_) return;
                          if (error) return self->Leave();
                          self->queue_.Pop();
-                         if (self->reason_) return self->SendClose();
+                         if (self->reason_ && self->queue_.empty()) return self->SendClose();
                          self->WriteNext();
+                         if (self->reason_) return;
                          if (self->queue_.empty()) self->view().Idle(*self);
                          self->Read();
                        });
@@ -366,7 +367,9 @@ void BeastConnection::GiveWay() {
 void BeastConnection::Close(CloseCode code, const std::string& why,
                             std::chrono::milliseconds limit) {
   reason_.emplace(static_cast<websocket::close_code>(code), why.substr(0, 120));
-  queue_.Clear(writing_);
+  // A client that is cut off gets only the reason. When the program ends, a client also gets the
+  // frames that wait for it.
+  if (code != CloseCode::kGoingAway) queue_.Clear(writing_);
   farewell_.expires_after(limit);
   farewell_.async_wait([self = shared_from_this()](error_code stopped) {
     if (!stopped) self->Leave();

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <future>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
@@ -39,11 +42,17 @@ class EchoView final : public View {
   void Opened(Client&) override {}
   void Received(Client& client, std::string_view bytes, bool) override {
     if (bytes == "wrong") client.CountWrongFrame("as the test says");
+    if (bytes == "end") {
+      for (const char* word : {"one", "two", "three"}) client.Send(TextFrame(word));
+      return end();
+    }
     if (bytes != "flood") return client.Send(TextFrame(std::string(bytes)));
     for (int i = 0; i < 32; ++i) client.Send(TextFrame(std::string(1 << 20, 'x')));
   }
   void Idle(Client&) override {}
   void Closed(Client&) override {}
+
+  std::function<void()> end;  // called after the frame "end"
 };
 
 /// A server in a thread of its own. stderr is captured.
@@ -52,6 +61,10 @@ class ServerLimitsTest : public ::testing::Test {
   void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1",
              bool seat = false) {
     ::testing::internal::CaptureStderr();
+    // The context may still have a handler of the server before.
+    context_.restart();
+    context_.poll();
+    context_.restart();
     server_.emplace(
         context_, ServerOptions{.address = address, .origins = {}, .limits = limits, .seat = seat},
         assets_, view_);
@@ -292,6 +305,25 @@ TEST_F(ServerLimitsTest, PingsOfAClient) {
   EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
   ExpectServes();
   EXPECT_THAT(End(), HasSubstr("cut off: sends more than 200 frames a second"));
+}
+
+TEST_F(ServerLimitsTest, AClientGetsTheFramesThatWaitForItWhenTheServerEnds) {
+  view_.end = [this] { server_->Stop(); };
+  // A busy machine may hold up the server for longer than the 0.3 s of its end.
+  constexpr int kTries = 5;
+  std::vector<std::string> got;
+  for (int i = 0; i < kTries && got.size() < 3; ++i) {
+    Serve({});
+    WebClient client(port());
+    client.Send("end");
+    got.clear();
+    try {
+      while (true) got.push_back(client.Receive().bytes);
+    } catch (const test::WebClosed&) {
+    }
+    End();
+  }
+  EXPECT_THAT(got, ::testing::ElementsAre("one", "two", "three"));
 }
 
 TEST_F(ServerLimitsTest, BytesThatAreNoFrame) {
