@@ -59,7 +59,9 @@ class KeysInRealtimeTest : public testing::Test {
 };
 
 TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
-  InTerminal program(Drive(600));
+  Words settings = AlwaysAsked();
+  settings.emplace_back(kALatePersonIsThere);
+  InTerminal program(Drive(1000, settings));
   Commands commands(url_);
   ASSERT_TRUE(program.WaitUntil([&] { return program.IsRaw(); })) << program.text();
   ASSERT_GE(commands.WaitFor([&] { return commands.driver.input_instance != 0; }), 0);

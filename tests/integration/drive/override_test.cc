@@ -35,6 +35,7 @@ Words TextsOf(const nlohmann::json& events) {
 /// Runs a scenario that a person drives by a script. @return what `fogline events` prints
 nlohmann::json EventsOf(const std::string& script, Words settings) {
   settings.emplace_back(kLateRolesAreNotLost);
+  settings.emplace_back(kALatePersonIsThere);
   RealtimeRun run(kDriveScenario, 600, 1, settings);
   const Background seat(SeatCommand(run.url(), script));
   run.Finish();

@@ -224,7 +224,7 @@ TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnAtTheSameAddress) {
-  WritePlan(600);  // long enough for a start of fogline-web on a busy machine
+  WritePlan(1200);  // long enough for a start of fogline-web on a busy machine
   PageSession session(Run());
   std::optional<PagePerson> person;
   std::set<std::string> seats;

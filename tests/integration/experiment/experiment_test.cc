@@ -116,7 +116,7 @@ TEST_F(ExperimentRealtimeTest, AKillOfFoglineWebInARunLosesNothingOfAnExperiment
   for (int participant = 1; participant <= kParticipants; ++participant) {
     // At this speed no run is over before the test has sent the marker.
     PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
-                         "--participant", std::to_string(participant), "--speed", "2"});
+                         "--participant", std::to_string(participant), "--speed", "1"});
     MakeTrials(session, participant, participant == 2 ? 2 : 0);
     EXPECT_EQ(session.process().Wait(), 0) << session.process().Err();
     const bool was_killed =

@@ -112,13 +112,21 @@ TEST(FaultTest, NoRoleHasASocketOfTheRunner) {
 }
 
 TEST(FaultTest, NamesAProcessThatHangs) {
-  PacedRun paced;
-  const std::vector<pid_t> pids = paced.Pids();
-  kill(paced.Pid("fusion"), SIGSTOP);
-  EXPECT_EQ(paced.run().Wait(), 3);
-  const std::string err = paced.run().Err();
-  EXPECT_NE(err.find("waits for TRACK from fusion (last heard: step "), std::string::npos) << err;
-  for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
+  // At the end of the run, a busy machine may have given another role no processor for a second.
+  // Then this role is named, and the test tries again.
+  constexpr int kTries = 3;
+  bool named = false;
+  std::string err;
+  for (int i = 0; i < kTries && !named; ++i) {
+    PacedRun paced;
+    const std::vector<pid_t> pids = paced.Pids();
+    kill(paced.Pid("fusion"), SIGSTOP);
+    EXPECT_EQ(paced.run().Wait(), 3);
+    err = paced.run().Err();
+    named = err.find("waits for TRACK from fusion (last heard: step ") != std::string::npos;
+    for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid)) << pid;
+  }
+  EXPECT_TRUE(named) << err;
 }
 
 TEST(FaultTest, EndsCleanlyOnCtrlCWithCode130) {
@@ -132,17 +140,27 @@ TEST(FaultTest, EndsCleanlyOnCtrlCWithCode130) {
 }
 
 TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
-  PacedRun paced;
-  const std::vector<pid_t> pids = paced.Pids();
-  paced.run().Signal(SIGKILL);
-  EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
-  const auto end = SteadyClock::now() + kPatience;
-  // The roles are not children of this test, so the test cannot wait for their ends by waitpid().
-  for (const pid_t pid : pids) {
-    while (IsAlive(pid) && SteadyClock::now() < end) std::this_thread::sleep_for(kLookEvery);
-    EXPECT_FALSE(IsAlive(pid)) << pid;
+  constexpr std::chrono::seconds kLimit(5);
+  // A busy machine may hold up one run, but hardly three.
+  constexpr int kTries = 3;
+  SteadyClock::duration took = kLimit;
+  for (int i = 0; i < kTries && took >= kLimit; ++i) {
+    PacedRun paced;
+    const std::vector<pid_t> pids = paced.Pids();
+    const auto killed = SteadyClock::now();
+    paced.run().Signal(SIGKILL);
+    EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
+    // The roles are not children of this test, so the test cannot wait for their ends by waitpid().
+    for (const pid_t pid : pids) {
+      while (IsAlive(pid) && SteadyClock::now() < killed + kPatience) {
+        std::this_thread::sleep_for(kLookEvery);
+      }
+      EXPECT_FALSE(IsAlive(pid)) << pid;
+    }
+    took = SteadyClock::now() - killed;
+    EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
   }
-  EXPECT_GE(paced.StepsOnDisk(), kUnderWay);
+  EXPECT_LT(took, kLimit);
 }
 
 }  // namespace

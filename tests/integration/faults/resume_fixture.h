@@ -89,7 +89,7 @@ class ResumeTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-inline const Words kPaced{"--pace", "10"};
+inline const Words kPaced{"--pace", "4"};
 
 /// A run over the network. The test receives the steps of the run.
 class SeenRun {

@@ -64,7 +64,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
     std::filesystem::remove(log_);
     // GIVEN a driver that was started from another shell
     // The run lasts six seconds, so that even a busy machine kills its runner before the end.
-    SeenRun seen(Paper(kResumeSteps) + Words{"--pace", "5", "--external", "driver"} + sealed, log_);
+    SeenRun seen(Paper(kResumeSteps) + Words{"--pace", "2", "--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner is killed, THEN the same driver continues with the next runner
     seen.KillAtStep(150);
@@ -86,7 +86,7 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
     seen.run().Signal(SIGINT);
     ASSERT_EQ(seen.run().Wait(), 130);
     EXPECT_THAT(seen.run().Err(), HasSubstr("; the log so far: " + log_ + command + " --lcm-url '" +
-                                            seen.url() + "' --pace 10\n"));
+                                            seen.url() + "' --pace 4\n"));
   }
   {
     const std::string options =

@@ -25,16 +25,25 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A paced run of the paper's scenario, of 2.5 s.
+/// A paced run of the paper's scenario, of 10 s.
 class StartAgainTest : public testing::Test {
  protected:
   std::vector<std::string> Run(const std::string& fogline, const std::vector<std::string>& more) {
     std::vector<std::string> command{
-        fogline, "run", "scenario/paper.json", "--json", "--log", log(), "--pace", "20"};
+        fogline, "run", "scenario/paper.json", "--json", "--log", log(), "--pace", "5"};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
   std::string log() const { return folder_.File("run.lcm"); }
+  /// Makes an installation that the test can change.
+  void MakeInstallation() const {
+    fs::create_directory(folder_.File("bin"));
+    fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
+    for (const RoleInfo& info : kRoles) {
+      const std::string name = "fogline-" + std::string(info.name);
+      fs::create_symlink(Program(name), folder_.File("bin/" + name));
+    }
+  }
 
   /// Expects that the run has the result of an undisturbed run and reports one restart of the
   /// process.
@@ -61,13 +70,7 @@ class StartAgainTest : public testing::Test {
 };
 
 TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
-  // GIVEN an installation that the test can change
-  fs::create_directory(folder_.File("bin"));
-  fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
-  for (const RoleInfo& info : kRoles) {
-    const std::string name = "fogline-" + std::string(info.name);
-    fs::create_symlink(Program(name), folder_.File("bin/" + name));
-  }
+  MakeInstallation();
   Background run(Run(folder_.File("bin/fogline"), {}));
   ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
   // WHEN a role is killed while its program is missing
@@ -79,20 +82,24 @@ TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
 }
 
 TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
-  fs::create_directory(folder_.File("bin"));
-  fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
-  for (const RoleInfo& info : kRoles) {
-    const std::string name = "fogline-" + std::string(info.name);
-    fs::create_symlink(Program(name), folder_.File("bin/" + name));
+  MakeInstallation();
+  const std::string fusion = folder_.File("bin/fogline-fusion");
+  // At the end of the run, a busy machine may have given another role no processor for a second.
+  // Then this role is named, and the test tries again.
+  constexpr int kTries = 3;
+  std::string err;
+  for (int i = 0; i < kTries && err.find("from fusion (last heard: step ") == err.npos; ++i) {
+    Background run(Run(folder_.File("bin/fogline"), {"--stall-timeout", "5"}));
+    ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
+    fs::rename(fusion, folder_.File("bin/away"));
+    kill(PidOf(run.Err(), "fusion"), SIGKILL);
+    EXPECT_EQ(run.Wait(), 3);
+    fs::rename(folder_.File("bin/away"), fusion);
+    fs::remove(log());
+    err = run.Err();
   }
-  Background run(Run(folder_.File("bin/fogline"), {"--stall-timeout", "5"}));
-  ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
-  fs::remove(folder_.File("bin/fogline-fusion"));
-  kill(PidOf(run.Err(), "fusion"), SIGKILL);
-  EXPECT_EQ(run.Wait(), 3);
-  EXPECT_THAT(run.Err(), HasSubstr("from fusion (last heard: step "));
-  EXPECT_THAT(run.Err(), HasSubstr("; cannot start " + folder_.File("bin/fogline-fusion") +
-                                   ": No such file or directory\n"));
+  EXPECT_THAT(err, HasSubstr("from fusion (last heard: step "));
+  EXPECT_THAT(err, HasSubstr("; cannot start " + fusion + ": No such file or directory\n"));
 }
 
 TEST_F(StartAgainTest, WaitsForRoomForAProcess) {

@@ -138,6 +138,10 @@ class WatchedRun {
     std::vector<std::string> arguments{"--lcm-url", bus_.url(), "--log",
                                        log_,        "--pace",   std::to_string(pace)};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    // On a busy machine new processes may need more than 4 s, which is the usual limit.
+    if (std::ranges::find(more, "--stall-timeout") == more.end()) {
+      arguments.insert(arguments.end(), {"--stall-timeout", "30"});
+    }
     arguments.insert(arguments.end(), changes_.begin(), changes_.end());
     return PaperOf(steps_, arguments);
   }

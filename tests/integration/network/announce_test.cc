@@ -82,10 +82,18 @@ std::string DirectDigest(const std::vector<std::string>& more = {}) {
 
 TEST(AnnounceTest, TopShowsARunOnAPortOfItsOwnWithoutBeingToldWhereItIs) {
   Meeting meeting;
-  Background run(meeting.Run({"--transport", "udpm", "--pace", "1"}));
+  Background run(meeting.Run({"--transport", "udpm", "--pace", "1", "--set", "/steps=10000"}));
   const Place place = PlaceOf(run);
   EXPECT_NE(place.url.substr(0, place.url.find('?')), meeting.url().substr(0, place.url.find('?')));
-  const json seen = TopOnce(meeting);
+  // On a busy machine a process of the run may need longer than a look of top.
+  json seen = TopOnce(meeting);
+  const auto is_whole = [&] {
+    return seen["announced"].size() == 1 && seen["runs"].size() == 1 &&
+           seen["runs"][0]["roles"].size() == kRoles.size();
+  };
+  for (const TimePoint end = Clock::now() + kPatience; !is_whole() && Clock::now() < end;) {
+    seen = TopOnce(meeting);
+  }
   EXPECT_EQ(seen["lcm_url"], place.url);
   ASSERT_EQ(seen["announced"].size(), 1U) << seen.dump(1);
   const json& announced = seen["announced"][0];
@@ -229,8 +237,8 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
   }
   // The run takes 25 s. A driver needs up to 5 s, and more on a busy machine, to notice that
   // another driver has the role.
-  Background run(
-      meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "2"}));
+  Background run(meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace",
+                              "2", "--stall-timeout", "30"}));
   ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
   // GIVEN two drivers in the run. One driver has reported that the other driver has the role
   const auto is_other = [](const Background& driver) {
@@ -382,14 +390,19 @@ TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOf
 
 TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedOnItsOwnMachineOnly) {
   const Lab lab(2);
-  Background run(lab[0].On(Run({"--pace", "1", "--lcm-url", "udpm://239.255.76.67:7700?ttl=1"})));
+  Background run(lab[0].On(Run(
+      {"--pace", "1", "--set", "/steps=10000", "--lcm-url", "udpm://239.255.76.67:7700?ttl=1"})));
   ASSERT_TRUE(run.WaitForErr("processes: ", kPatience)) << run.Err();
   const auto announced = [&lab](std::size_t place) {
     const Outcome top = RunCommand(
         lab[place].On({Program("fogline"), "top", "--once", "--json", "--interval", "5"}));
     return json::parse(top.out)["announced"].size();
   };
-  EXPECT_EQ(announced(0), 1U);
+  // On a busy machine the runner may need longer than a look of top.
+  std::size_t here = announced(0);
+  const TimePoint end = Clock::now() + kPatience;
+  while (here != 1 && Clock::now() < end) here = announced(0);
+  EXPECT_EQ(here, 1U);
   EXPECT_EQ(announced(1), 0U);
 }
 

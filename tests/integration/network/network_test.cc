@@ -7,11 +7,13 @@
 #include <csignal>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <thread>
 
 #include "common/clock.h"
 #include "services/graph.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
@@ -126,7 +128,14 @@ INSTANTIATE_TEST_SUITE_P(Together, TwoRunsTest, testing::Values(0U, 1U), [](cons
 TEST_F(NetworkTest, AProcessThatIsBoundToAnotherRunIsIgnoredAndNamed) {
   const Lab lab(2);
   Background stale(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", "123"}));
-  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "40"})));
+  std::optional<runtime::Bus> bus;
+  lab[0].Enter([&] { bus.emplace(kUrl); });
+  bool heard = false;
+  bus->Subscribe(ChannelOf<status_t>().name, [&](runtime::Bytes) { heard = true; });
+  const TimePoint end = Clock::now() + kPatience;
+  while (!heard && Clock::now() < end) bus->Wait(milliseconds(20));
+  ASSERT_TRUE(heard) << stale.Err();
+  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "10"})));
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
   ASSERT_EQ(result["strangers"].size(), 1U);
@@ -149,7 +158,7 @@ TEST_F(NetworkTest, ARoleWhoseRunnerHasDiedTakesNoPartInTheNextRun) {
   first.Signal(SIGKILL);
   first.Wait();
   // WHEN another run takes place with a driver of its own
-  Background second(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "40"})));
+  Background second(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "10"})));
   // THEN the old driver changes nothing
   EXPECT_EQ(ResultOf(second)["digest"], Undisturbed());
   EXPECT_THAT(second.Err(), HasSubstr("ignored: driver (pid " + std::to_string(orphan.pid()) +

@@ -93,7 +93,7 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   lab[1].Do(GetParam().begin);
   // The run waits for the driver. No event shows this test that a message of the driver was lost.
   // The driver sends a message every 200 ms, or later on a busy machine.
-  std::this_thread::sleep_for(milliseconds(1000));
+  std::this_thread::sleep_for(milliseconds(4000));
   lab[1].Do(GetParam().end);
   // THEN the result is that of an undisturbed run
   const auto result = ResultOf(run);

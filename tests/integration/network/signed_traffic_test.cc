@@ -242,7 +242,7 @@ TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
       other.WaitForErr("with a wrong signature were refused: do all processes have the "
                        "same key?"));
   // AND the runner also reports the drivers, while it waits and at its end
-  EXPECT_TRUE(run.WaitForErr("warning: "));
+  EXPECT_TRUE(run.WaitForErr("with a wrong signature were refused"));
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 130);
   EXPECT_THAT(run.Err(), HasSubstr("driver (never heard)"));

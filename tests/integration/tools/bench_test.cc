@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -56,18 +57,26 @@ TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
   const ScratchFolder folder;
   std::filesystem::create_directory_symlink(FOGLINE_SOURCE_DIR, folder.File("source"));
   std::filesystem::create_directory_symlink(FOGLINE_BINARY_DIR, folder.File("build"));
+  const auto ratio = [](const nlohmann::json& comparison) {
+    return std::abs(std::log10(comparison["ratio"]["median"].get<double>()));
+  };
   // On a busy machine a single start takes up to 350 ms in place of 3 ms. The median of five rounds
-  // leaves such starts out.
-  const Outcome outcome =
-      RunCommand({Program("fogline-bench"), "--quick", "--rounds", "5", "--json", "--against",
-                  folder.path(), "--only", "against-sweep", "--only", "against-start"},
-                 2 * kPatience);
-  EXPECT_LE(outcome.code, 1) << outcome.err;  // code 1: one of two equal programs was slower
-  const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
-  ASSERT_EQ(comparisons.size(), 2U) << outcome.out;
+  // leaves such starts out. If three of five starts take so long, the test measures again.
+  constexpr int kTries = 3;
+  nlohmann::json comparisons;
+  for (int i = 0; i < kTries; ++i) {
+    const Outcome outcome =
+        RunCommand({Program("fogline-bench"), "--quick", "--rounds", "5", "--json", "--against",
+                    folder.path(), "--only", "against-sweep", "--only", "against-start"},
+                   2 * kPatience);
+    ASSERT_LE(outcome.code, 1) << outcome.err;  // code 1: one of two equal programs was slower
+    comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
+    ASSERT_EQ(comparisons.size(), 2U) << outcome.out;
+    if (std::ranges::all_of(comparisons, [&](const auto& one) { return ratio(one) < 1; })) break;
+  }
   for (const auto& comparison : comparisons) {
-    EXPECT_GT(comparison["ours_measured"]["median"].get<double>(), 0) << outcome.out;
-    EXPECT_NEAR(std::log10(comparison["ratio"]["median"].get<double>()), 0, 1) << outcome.out;
+    EXPECT_GT(comparison["ours_measured"]["median"].get<double>(), 0) << comparison;
+    EXPECT_LT(ratio(comparison), 1) << comparison;
   }
 }
 

@@ -210,6 +210,17 @@ TEST_F(OutputFilesTest, ASweepReplacesNoFileBesideItsOwnThatIsOfNoSweep) {
   EXPECT_EQ(Files(), before);
 }
 
+/// Whether every thread of a process waits for an event.
+bool AllThreadsSleep(pid_t pid) {
+  for (const auto& thread :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/task")) {
+    // The state follows the name of the program, which is in parentheses.
+    const std::string stat = Content(thread.path() / "stat");
+    if (stat.find(") S ") == std::string::npos) return false;
+  }
+  return true;
+}
+
 TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   const std::string pipe = folder_.File("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -223,7 +234,14 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
     ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();
     std::this_thread::sleep_for(milliseconds(20));
   }
-  std::this_thread::sleep_for(milliseconds(1000));  // the sweep comes to this write
+  // No event shows that the sweep has come to this write. But then none of its threads is ready to
+  // run for long.
+  constexpr int kLooks = 50;
+  for (int asleep = 0; asleep < kLooks;) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();
+    std::this_thread::sleep_for(milliseconds(20));
+    asleep = AllThreadsSleep(sweep.pid()) ? asleep + 1 : 0;
+  }
   sweep.Signal(SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
   EXPECT_EQ(sweep.Err(), "fogline sweep: interrupted in " + pipe + "\n");

@@ -13,7 +13,7 @@
 namespace fogline::test {
 
 // The duration of top, which is longer than any test with top.
-inline constexpr std::chrono::seconds kTopFor(240);
+inline constexpr auto kTopFor = std::chrono::duration_cast<std::chrono::seconds>(2 * kPatience);
 
 /// `fogline top --json`, which prints a document for each interval until the test ends.
 class Top {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "tests/integration/web/viewed.h"
 
@@ -82,11 +83,16 @@ TEST(RunViewTest, WaitsOneSecondForAViewerThatHangs) {
   const ScratchFolder folder;
   LinkProgramsTo(folder);
   const std::string hangs = folder.File("fogline-web");
-  std::ofstream(hangs) << "#!/bin/sh\nexec sleep 600\n";
+  const std::string started = folder.File("started");
+  std::ofstream(hangs) << "#!/bin/sh\n: > " << started << "\nexec sleep 600\n";
   std::filesystem::permissions(hangs, std::filesystem::perms::owner_all);
-  const TimePoint began = Clock::now();
   Background run(
       RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
+  const TimePoint end = Clock::now() + kPatience;
+  while (!std::filesystem::exists(started) && Clock::now() < end) {
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  const TimePoint began = Clock::now();
   ASSERT_TRUE(run.WaitForErr("--view: fogline-web does not listen after 1 s", kPatience));
   EXPECT_LT(Clock::now() - began, milliseconds(9000));
   EXPECT_EQ(run.Wait(), 0) << run.Err();

@@ -116,18 +116,34 @@ TEST_F(SeatPageTest, APageThatIsOpenedLateIsToldWhenTheRequestBegan) {
 }
 
 TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
-  std::optional<WebClient> page(Page(port()));
-  page->Send(Braking(0));
-  const driver_input_t there = network_.Hear(IsThere);
-  page.reset();
-  const driver_input_t away = network_.Hear(IsAway);
-  EXPECT_EQ(away.brake, 0);
-  EXPECT_EQ(away.buttons, 0);
-  EXPECT_EQ(away.instance, there.instance);
-  EXPECT_EQ(away.sequence, there.sequence + 1);
-  // The seat reports the absence because the page is closed, and not because the page is silent.
+  // How often the program has said that a page is silent. When it answers, it has said all.
+  const auto silences = [this] {
+    EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
+    const std::string err = viewed_.process().Err();
+    int count = 0;
+    for (std::size_t at = 0; (at = err.find("its page is silent", at)) != std::string::npos; ++at) {
+      ++count;
+    }
+    return count;
+  };
+  // On a busy machine a page may count as silent before it is closed. Then another page is closed.
+  constexpr int kTries = 10;
+  bool at_once = false;
+  for (int i = 0; i < kTries && !at_once; ++i) {
+    const int before = silences();
+    std::optional<WebClient> page(Page(port()));
+    page->Send(Braking(0));
+    const driver_input_t there = network_.Hear(IsThere);
+    page.reset();
+    const driver_input_t away = network_.Hear(IsAway);
+    EXPECT_EQ(away.brake, 0);
+    EXPECT_EQ(away.buttons, 0);
+    EXPECT_EQ(away.instance, there.instance);
+    EXPECT_EQ(away.sequence, there.sequence + 1);
+    at_once = silences() == before;
+  }
+  EXPECT_TRUE(at_once) << viewed_.process().Err();
   EXPECT_EQ(viewed_.End(), 0);
-  EXPECT_THAT(viewed_.process().Err(), Not(HasSubstr("its page is silent")));
 }
 
 TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
@@ -164,7 +180,11 @@ TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
     // If the machine has stopped the first person for 300 ms, this person counts as absent, and the
     // second page gets the seat. Then this page gives the seat back, and the test tries again.
     second.Send(Away(1));
-    AnswerTo(second);
+    // If the first person has the seat again, nothing answers. The page was told so before.
+    for (json told; told["op"] != "published" && told["state"] != "taken";) {
+      const WebFrame frame = second.Receive();
+      if (!frame.binary) told = json::parse(frame.bytes);
+    }
     network_.Hear(IsThere);
   }
   EXPECT_THAT(answer["message"].get<std::string>(), HasSubstr("another person has the seat"));
@@ -224,7 +244,8 @@ TEST_F(SeatPageTest, ClosesAPageThatSendsALargeFrame) {
 TEST_F(SeatPageTest, RefusesAFloodAndThenClosesThePage) {
   WebClient page = Page(port());
   try {
-    for (int i = 0; i < 100'000; ++i) page.Send(Braking(i));
+    const std::string frame = Braking(0);
+    for (int i = 0; i < 100'000; ++i) page.Send(frame);
   } catch (const WebClosed&) {
     // The server has cut the page off.
   }
