@@ -7,13 +7,11 @@
 #include <csignal>
 #include <deque>
 #include <map>
-#include <optional>
 #include <set>
 #include <thread>
 
 #include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/transport/bus.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {
@@ -128,13 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Together, TwoRunsTest, testing::Values(0U, 1U), [](cons
 TEST_F(NetworkTest, AProcessThatIsBoundToAnotherRunIsIgnoredAndNamed) {
   const Lab lab(2);
   Background stale(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", "123"}));
-  std::optional<runtime::Bus> bus;
-  lab[0].Enter([&] { bus.emplace(kUrl); });
-  bool heard = false;
-  bus->Subscribe(ChannelOf<status_t>().name, [&](runtime::Bytes) { heard = true; });
-  const TimePoint end = Clock::now() + kPatience;
-  while (!heard && Clock::now() < end) bus->Wait(milliseconds(20));
-  ASSERT_TRUE(heard) << stale.Err();
+  // The process says nothing before it hears a run, and it may start late. So the run takes 5 s.
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "10"})));
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
