@@ -2,8 +2,7 @@
 
 namespace fogline::follower {
 
-CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const models::Situation& now,
-                                  double /*visibility_m*/) {
+DriverAction AccDriver::Step(const models::Situation& now) {
   const acc::AccController::Output output = controller_.Step({
       .distance_m = now.ahead->gap_m,
       .relative_speed_mps = now.ahead->speed_mps - now.speed_mps,
@@ -11,7 +10,7 @@ CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const models::Situation
       .acceleration_mps2 = now.acceleration_mps2,
       .has_target = true,
   });
-  Action action{output.acceleration_mps2, output.safe_distance_m};
+  DriverAction action{output.acceleration_mps2, output.safe_distance_m};
   if (aeb_) {
     aeb_->Step(now);
     action.acceleration_mps2 = aeb_->Applied(action.acceleration_mps2);

@@ -7,12 +7,13 @@
 #include "services/acc/acc_controller.h"
 #include "services/follower/car_driver.h"
 #include "services/models/aeb/aeb.h"
+#include "services/models/driver/situation.h"
 
 namespace fogline::follower {
 
 /// The same ACC as in the host (services/acc), with its own parameters and with perfect sensors.
 /// Emergency braking, if the car has it, uses the same sensors.
-class AccDriver final : public CarDriver {
+class AccDriver {
  public:
   /// @throws InputError if the section's weights make an ill-conditioned problem.
   explicit AccDriver(const Scenario& scenario)
@@ -27,7 +28,8 @@ class AccDriver final : public CarDriver {
     aeb_ = AebOf(scenario.followers);
   }
 
-  Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
+  /// The driver's action in the next step. @param now the truth, with a car ahead
+  DriverAction Step(const models::Situation& now);
 
  private:
   acc::AccController controller_;

@@ -1,27 +1,26 @@
 #include "services/follower/follower.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "services/follower/acc_driver.h"
 #include "services/follower/driver_assignment.h"
-#include "services/follower/person.h"
 
 namespace fogline::follower {
 namespace {
 
-std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
-                                      models::Style style) {
+Person MakePerson(const Scenario& scenario, std::size_t car, models::Style style) {
   const Random errors(scenario.seed, FollowerErrors(static_cast<std::uint32_t>(car)));
   std::optional<models::FogSight> sight;
   if (scenario.followers.sight == Sight::kFog) sight.emplace(scenario.human.fog_sight);
   try {
-    return std::make_unique<Person>(style, sight, scenario.followers.safety_model, errors,
-                                    scenario.step_s, AebOf(scenario.followers));
+    return {style,  sight,           scenario.followers.safety_model,
+            errors, scenario.step_s, AebOf(scenario.followers)};
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("/step_s: {} s is too short for a person in following car {}: {}",
                                  scenario.step_s, car, error.what()));
@@ -29,16 +28,14 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
 }
 
 /// The driver of this car. If this driver and `before` are both ACCs, the result is `before`,
-/// restarted. Otherwise the result is a new object.
-std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
-                                      std::unique_ptr<CarDriver> before) {
+/// restarted. Otherwise the result is a new object. @param before may be nullptr
+CarDriver MakeDriver(const Scenario& scenario, std::size_t car, CarDriver* before) {
   const DriverAssignment assignment = AssignmentOf(scenario, car);
   if (!assignment.has_acc) return MakePerson(scenario, car, assignment.style);
-  if (auto* acc = dynamic_cast<AccDriver*>(before.get())) {
-    acc->Restart(scenario);
-    return before;
-  }
-  return std::make_unique<AccDriver>(scenario);
+  auto* acc = before == nullptr ? nullptr : std::get_if<AccDriver>(before);
+  if (acc == nullptr) return AccDriver(scenario);
+  acc->Restart(scenario);
+  return std::move(*acc);
 }
 
 /// The true situation of this following car.
@@ -56,9 +53,11 @@ models::Situation SituationOf(const truth_t& truth, std::size_t car) {
 }  // namespace
 
 void Follower::Restart(const Scenario& scenario) {
-  drivers_.resize(static_cast<std::size_t>(scenario.followers.count));
-  for (std::size_t car = 0; car < drivers_.size(); ++car) {
-    drivers_[car] = MakeDriver(scenario, car, std::move(drivers_[car]));
+  std::vector<CarDriver> before = std::exchange(drivers_, {});
+  const auto cars = static_cast<std::size_t>(scenario.followers.count);
+  drivers_.reserve(cars);
+  for (std::size_t car = 0; car < cars; ++car) {
+    drivers_.push_back(MakeDriver(scenario, car, car < before.size() ? &before[car] : nullptr));
   }
   out_.acceleration_mps2.reserve(drivers_.size());
   out_.safe_distance_m.reserve(drivers_.size());
@@ -72,8 +71,11 @@ const follower_command_t& Follower::Step(const truth_t& truth) {
   out_.acceleration_mps2.clear();
   out_.safe_distance_m.clear();
   for (std::size_t car = 0; car < cars; ++car) {
-    const CarDriver::Action action =
-        drivers_[car]->Step(truth.header.step, SituationOf(truth, car), truth.fog_visibility_m);
+    const models::Situation now = SituationOf(truth, car);
+    auto* person = std::get_if<Person>(&drivers_[car]);
+    const DriverAction action = person != nullptr
+                                    ? person->Step(truth.header.step, now, truth.fog_visibility_m)
+                                    : std::get<AccDriver>(drivers_[car]).Step(now);
     out_.acceleration_mps2.push_back(action.acceleration_mps2);
     out_.safe_distance_m.push_back(action.safe_distance_m);
   }

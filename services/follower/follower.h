@@ -1,16 +1,19 @@
 // The cars behind the host.
 #pragma once
 
-#include <cstddef>
-#include <memory>
+#include <variant>
 #include <vector>
 
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
-#include "services/follower/car_driver.h"
+#include "services/follower/acc_driver.h"
+#include "services/follower/person.h"
 
 namespace fogline::follower {
+
+/// The driver of a following car.
+using CarDriver = std::variant<AccDriver, Person>;
 
 /// The algorithm of the role `follower`: it drives the following cars. The driver of each car is
 /// the same ACC as in the host (acc_driver.h), or a person (person.h). Each driver receives the
@@ -32,7 +35,7 @@ class Follower {
   const follower_command_t& Step(const truth_t& truth);
 
  private:
-  std::vector<std::unique_ptr<CarDriver>> drivers_;
+  std::vector<CarDriver> drivers_;
   follower_command_t out_{};
 };
 

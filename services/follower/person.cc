@@ -31,8 +31,7 @@ Person::Person(models::Style style, const std::optional<models::FogSight>& sight
       safety_(ResponseOf(safety, step_s)),
       aeb_(aeb) {}
 
-CarDriver::Action Person::Step(std::int64_t step, const models::Situation& now,
-                               double visibility_m) {
+DriverAction Person::Step(std::int64_t step, const models::Situation& now, double visibility_m) {
   const models::Situation seen = sight_ ? sight_->Perceive(now, visibility_m) : now;
   double acceleration_mps2 = driver_.Step(step, seen);
   if (safety_) {

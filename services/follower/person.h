@@ -1,6 +1,7 @@
 // A person in a following car: with a style, human errors, and optionally a safety model.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "scenario/sections/traffic.h"
@@ -8,6 +9,7 @@
 #include "services/models/aeb/aeb.h"
 #include "services/models/driver/fog_sight.h"
 #include "services/models/driver/human_driver.h"
+#include "services/models/driver/situation.h"
 #include "services/models/follower/safety_response.h"
 #include "services/models/follower/style.h"
 
@@ -21,7 +23,7 @@ namespace fogline::follower {
 /// fog, both models receive only what the person sees in fog, like the host's driver
 /// (services/models/driver/fog_sight.h). Emergency braking, if the car has it, also receives what
 /// the person sees. Emergency braking has no errors and no reaction time.
-class Person final : public CarDriver {
+class Person {
  public:
   /// @param sight nullopt if the person sees perfectly
   /// @param errors random numbers for the person's errors; each person has a separate stream
@@ -31,7 +33,10 @@ class Person final : public CarDriver {
          SafetyModelChoice safety, const Random& errors, double step_s,
          const std::optional<models::Aeb>& aeb = std::nullopt);
 
-  Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
+  /// The driver's action in this step. Call Step() once per step, in the order of steps.
+  /// @param now the truth, with a car ahead
+  /// @param visibility_m meteorological optical range
+  DriverAction Step(std::int64_t step, const models::Situation& now, double visibility_m);
 
  private:
   DriverSection idm_;
