@@ -99,6 +99,8 @@ struct DriverSection {
                 "our choice, because tyres have a friction of 0.9 to 1.0 on a dry road");
   FOGLINE_FIELD(double, readiness, 1.0, {0, 1}, "Readiness that the driver reports.",
                 "Sourav & Cheng 2024: the driver is always ready");
+
+  bool operator==(const DriverSection&) const = default;
 };
 
 /// How a measure's score becomes the DoC.
@@ -173,6 +175,8 @@ struct ArbitratorSection {
   FOGLINE_FIELD(BlendSection, blend, {}, "Parameters of policy blend.");
   FOGLINE_FIELD(TakeOverSection, take_over, {},
                 "Emergency fallback: whether and how the driver is asked to take over.");
+
+  bool operator==(const ArbitratorSection&) const = default;
 };
 
 }  // namespace fogline

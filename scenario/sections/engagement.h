@@ -98,6 +98,8 @@ struct TransferSection {
   FOGLINE_FIELD(double, gate_jerk_mps3, 0.5, {0.05, 100, "m/s3"},
                 "For gate: fastest change of the command.",
                 "Autoware's vehicle_cmd_gate on transition: 0.5");
+
+  bool operator==(const TransferSection&) const = default;
 };
 
 /// Policy adaptive: a threshold that depends on the situation,
@@ -123,6 +125,8 @@ struct AdaptiveSection {
                 "our choice, because with a threshold near 0 the automation would never drive");
   FOGLINE_FIELD(double, most, 0.9, {0.5, 1}, "Largest threshold.",
                 "our choice, because with a threshold near 1 the human would never drive");
+
+  bool operator==(const AdaptiveSection&) const = default;
 };
 
 /// Policy bayes: the human drives while P(conflict) >= C_h / (C_h + C_a). C_h = human_cost +
@@ -155,6 +159,8 @@ struct BayesSection {
   FOGLINE_FIELD(double, near_ttc_s, 4.0, {0.1, 60, "s"},
                 "Time to collision at which follower_cost counts in full.",
                 "our choice, because 4 s is a common limit of severe conflicts");
+
+  bool operator==(const BayesSection&) const = default;
 };
 
 /// Policy availability: like traded, but the driver gets authority only if a take-over is possible
@@ -174,6 +180,8 @@ struct AvailabilitySection {
   FOGLINE_FIELD(double, horizon_s, 20.0, {1, 600, "s"},
                 "Look-ahead time. Later events do not count.",
                 "our choice, because a take-over by default ends much earlier: 95 % within 5.5 s");
+
+  bool operator==(const AvailabilitySection&) const = default;
 };
 
 /// Policy blend: both drive, the human in proportion to the conflict:
@@ -185,6 +193,8 @@ struct BlendSection {
                 "Width of the DoC range that begins at the value of `from`. In this range both "
                 "drive; above it the human drives alone.",
                 "Sourav & Cheng 2024: 0.8 is the highest threshold");
+
+  bool operator==(const BlendSection&) const = default;
 };
 
 }  // namespace fogline

@@ -53,6 +53,8 @@ struct FogSightParameters {
   FOGLINE_FIELD(double, lamp_separation_m, 1.3, {0.3, 5, "m"},
                 "Distance between the lamps of the car ahead.",
                 "our choice, because the lamps of usual cars are 1.2 to 1.4 m apart");
+
+  bool operator==(const FogSightParameters&) const = default;
 };
 
 /// Human Driver Model: errors with a memory, reaction time, anticipation.
@@ -69,6 +71,8 @@ struct HumanParameters {
   FOGLINE_FIELD(
       bool, anticipates, true,
       "The driver anticipates the traffic. This compensates for the driver's reaction time.");
+
+  bool operator==(const HumanParameters&) const = default;
 };
 
 /// How much of the road a driver is aware of, and how this awareness fades and returns.
@@ -87,6 +91,8 @@ struct AwarenessParameters {
   FOGLINE_FIELD(double, slow_reaction_time_s, 0.7, {0, 3, "s"},
                 "Additional reaction time of a driver without awareness.",
                 "our choice, because it nearly doubles the reaction time; no measurement is known");
+
+  bool operator==(const AwarenessParameters&) const = default;
 };
 
 /// Parameters of the human driver in addition to the IDM parameters of section driver. The defaults
@@ -107,6 +113,8 @@ struct HumanSection {
   FOGLINE_FIELD(FogSightParameters, fog_sight, {}, "Parameters of sight fog.");
   FOGLINE_FIELD(HumanParameters, errors, {}, "Parameters of misjudges.");
   FOGLINE_FIELD(AwarenessParameters, awareness, {}, "Parameters of loses_awareness.");
+
+  bool operator==(const HumanSection&) const = default;
 };
 
 }  // namespace fogline

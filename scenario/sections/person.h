@@ -90,6 +90,8 @@ struct PersonSection {
   FOGLINE_FIELD(double, key_release_ps, 4.0, {0.1, 20, "1/s"},
                 "How fast a pedal moves back when its key is up.",
                 "our choice, because a foot leaves a pedal in about a quarter of a second");
+
+  bool operator==(const PersonSection&) const = default;
 };
 
 /// Error text for a run that is not in real time although a person drives.

@@ -29,6 +29,8 @@ struct HealthSection {
                 "Then it decides with the inputs that have come.",
                 "our choice, because half a period is for the inputs, and half for the command's "
                 "way to the vehicle");
+
+  bool operator==(const HealthSection&) const = default;
 };
 
 /// Limits of the minimal risk manoeuvre (services/models/minimal_risk/minimal_risk.h).
@@ -40,6 +42,8 @@ struct MinimalRiskSection {
                 "Fastest change of the acceleration, both at the beginning and at the end.",
                 "our choice, because it is between Autoware's comfortable stop (0.3) and its "
                 "emergency stop (1.5)");
+
+  bool operator==(const MinimalRiskSection&) const = default;
 };
 
 }  // namespace fogline

@@ -33,6 +33,8 @@ struct WorldSection {
                 "Gap from the following car to the host at step 0, bumper to bumper.",
                 "our choice, because it is the following ACC's own gap at 20 m/s: 1.5 s times 20 "
                 "m/s and 3 m");
+
+  bool operator==(const WorldSection&) const = default;
 };
 
 enum class LeadProfile { kConstant, kBreakpoints, kSinusoid, kEmergencyBrake, kRecorded, kSumo };
@@ -54,6 +56,8 @@ struct SpeedBreakpoint {
   FOGLINE_FIELD(double, speed_mps, 20.0, {0, 70, "m/s"}, "Speed at the end of duration_s.",
                 "our choice, because it is the default of lead.speed_mps, so the first breakpoint "
                 "changes nothing if both fields have their defaults");
+
+  bool operator==(const SpeedBreakpoint&) const = default;
 };
 
 struct SinusoidSection {
@@ -65,6 +69,8 @@ struct SinusoidSection {
                 "ACC's limits");
   FOGLINE_FIELD(double, start_s, 0.0, {0, 1e5, "s"}, "Time at which the sine begins.",
                 "our choice, because a sine begins without a jump and needs no lead-in");
+
+  bool operator==(const SinusoidSection&) const = default;
 };
 
 struct EmergencyBrakeSection {
@@ -74,6 +80,8 @@ struct EmergencyBrakeSection {
                 "ASAM OSC-ALKS scenario 4.3_2: 6.0 m/s2");
   FOGLINE_FIELD(double, final_speed_mps, 0.0, {0, 70, "m/s"}, "Speed at which the braking ends.",
                 "our choice, because an emergency stop ends at rest");
+
+  bool operator==(const EmergencyBrakeSection&) const = default;
 };
 
 /// Largest number of speeds of a recorded leader, enough for 27 hours with steps of 0.1 s.
@@ -94,6 +102,8 @@ struct RecordedSection {
   FOGLINE_FIELD(std::vector<double>, speeds_mps, {}, {0, kMaxRecordedSpeeds}, {0, 70, "m/s"},
                 "Speed at steps 0, 1, 2 ..., instead of a file; the last one stays.",
                 "the recording that file names, or the scenario's own list");
+
+  bool operator==(const RecordedSection&) const = default;
 };
 
 /// Largest number of lines of a text for SUMO.
@@ -121,6 +131,8 @@ struct SumoSection {
                 "Lines of the network, instead of net_file.");
   FOGLINE_FIELD(std::vector<std::string>, routes, {}, {0, kMaxSumoLines},
                 "Lines of the routes and cars, instead of route_file.");
+
+  bool operator==(const SumoSection&) const = default;
 };
 
 /// Speed of the preceding car over time.
@@ -139,6 +151,8 @@ struct LeadSection {
                 {.choice = "profile", .value = "recorded", .fields = {"file", "speeds_mps"}});
   FOGLINE_FIELD(SumoSection, sumo, {}, "Parameters of profile sumo.",
                 {.choice = "profile", .value = "sumo", .fields = {"net_file", "net"}});
+
+  bool operator==(const LeadSection&) const = default;
 };
 
 enum class FogModel { kNone, kBias, kBeam, kModes };
@@ -192,6 +206,8 @@ struct FogModesSection {
                 "Range beyond which the share is missing_share; below missing_from_m it counts as "
                 "missing_from_m.",
                 "RADIATE (Sheeny et al. 2021), drive fog_6_0: beyond 35 m no car of 65 is seen");
+
+  bool operator==(const FogModesSection&) const = default;
 };
 
 /// Fog over time. Its level in [0, 1] follows `profile` over the window. The level scales the bias
@@ -222,6 +238,8 @@ struct FogSection {
                 "Rain rate during the whole run. Rain attenuates the radar (ITU-R P.838-3).",
                 "our choice, because the paper's weather is only fog");
   FOGLINE_FIELD(FogModesSection, modes, {}, "Parameters of model modes.");
+
+  bool operator==(const FogSection&) const = default;
 };
 
 }  // namespace fogline

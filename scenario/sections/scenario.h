@@ -28,6 +28,8 @@ struct PublishedRow {
                 "Sourav & Cheng 2024: 100, 80.79, 10.23");
   FOGLINE_FIELD(double, rhe_pct, 0.0, {0, 100, "%"}, "Redundant human engagement.",
                 "Sourav & Cheng 2024: 100, 0, 0");
+
+  bool operator==(const PublishedRow&) const = default;
 };
 
 /// Thresholds and parameters of the measures (services/metrics), with their sources.
@@ -78,6 +80,8 @@ struct MeasuresSection {
       "Error from which on a distance counts as wrong: that of the LiDAR, and that of the "
       "track beyond the error that the sensors' offsets cause.",
       "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
+
+  bool operator==(const MeasuresSection&) const = default;
 };
 
 /// Largest number of steps of a run.
@@ -125,6 +129,8 @@ struct Scenario {
   FOGLINE_FIELD(MeasuresSection, measures, {}, "Parameters of the measures.");
   FOGLINE_FIELD(std::vector<PublishedRow>, published, {}, {0, 100},
                 "A published table; `fogline table` prints it beside its own.");
+
+  bool operator==(const Scenario&) const = default;
 };
 
 }  // namespace fogline

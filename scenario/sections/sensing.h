@@ -35,6 +35,8 @@ struct RadarSection {
                 "Temperature of the fog's droplets, for ITU-R P.840.",
                 "our choice, because 10 C is in the middle: at 0, 10 and 20 C ITU-R P.840 has "
                 "3.54, 3.15 and 2.71 dB/km per g/m3 at 77 GHz");
+
+  bool operator==(const RadarSection&) const = default;
 };
 
 /// Properties of a LiDAR beam, for fog model `beam` and the near echoes of fog model `modes`
@@ -76,6 +78,8 @@ struct LidarBeamSection {
       double, fog_range_scale_m, 10.0, {0, 100, "m"},
       "Fog echoes lie beyond their peak by this length times a random number of Beta(2, 20).",
       "Hahner et al. 2021, noise variant 4: 10 m");
+
+  bool operator==(const LidarBeamSection&) const = default;
 };
 
 /// Parameters of the host's LiDAR.
@@ -95,6 +99,8 @@ struct LidarSection {
                 "our choice, because the paper has no dropouts");
   FOGLINE_FIELD(LidarBeamSection, beam, {},
                 "Parameters of fog model beam, and of the near echoes of fog model modes.");
+
+  bool operator==(const LidarSection&) const = default;
 };
 
 enum class NoiseAdaptation { kNone, kInnovation, kResidual };
@@ -145,6 +151,8 @@ struct FusionSection {
   FOGLINE_FIELD(double, initial_acceleration_std_mps2, 1.0, {1e-3, 100, "m/s2"},
                 "Initial uncertainty of the preceding car's acceleration.",
                 "our choice, because ordinary driving stays within about 1 m/s2 most of the time");
+
+  bool operator==(const FusionSection&) const = default;
 };
 
 }  // namespace fogline

@@ -39,6 +39,8 @@ struct TakeOverParameters {
       double, late_probability, 0.05, {1e-6, 0.1},
       "For log_normal_by_lead and sumo: probability that the take-over time exceeds the lead time.",
       "SUMO's ToC device: 0.05");
+
+  bool operator==(const TakeOverParameters&) const = default;
 };
 
 /// Least time in s between a request to take over and the minimal risk manoeuvre, if the situation
@@ -83,6 +85,8 @@ struct TakeOverSection {
   FOGLINE_FIELD(double, jerk_mps3, 2.5, {0.1, 20, "m/s3"},
                 "How fast the manoeuvre's deceleration grows.",
                 "ISO 15622: 2.5 above 20 m/s, averaged over 1 s");
+
+  bool operator==(const TakeOverSection&) const = default;
 };
 
 }  // namespace fogline

@@ -45,6 +45,8 @@ struct FollowerCar {
   FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Driver of the car.");
   FOGLINE_FIELD(FollowerStyle, style, FollowerStyle::kNormal,
                 "For a human driver: style of driving.");
+
+  bool operator==(const FollowerCar&) const = default;
 };
 
 /// The cars behind the host. Each car starts with the speed and the gap of world.follower_*.
@@ -76,6 +78,8 @@ struct FollowersSection {
   FOGLINE_FIELD(std::vector<FollowerCar>, cars, {}, {0, kMaxFollowers},
                 "Drivers of single cars, nearest to the host first. The other cars follow the "
                 "fields above. Entries beyond count have no effect.");
+
+  bool operator==(const FollowersSection&) const = default;
 };
 
 }  // namespace fogline

@@ -37,6 +37,8 @@ struct GradePoint {
   FOGLINE_FIELD(double, grade, 0, {-0.3, 0.3},
                 "Rise per horizontal length, positive uphill: 0.05 is 5 %.",
                 "our choice, because a road is level unless the experiment says otherwise");
+
+  bool operator==(const GradePoint&) const = default;
 };
 
 /// The road under all cars. The road has no effect on a point mass. If host or following cars have
@@ -48,6 +50,8 @@ struct RoadSection {
                 "braking of the preceding car, unless all other cars are point masses.");
   FOGLINE_FIELD(std::vector<GradePoint>, grade, {}, {0, 10'000},
                 "Slope, linear between places. Without places the road is level.");
+
+  bool operator==(const RoadSection&) const = default;
 };
 
 /// The vehicle of the host, or of all following cars.
@@ -55,6 +59,8 @@ struct VehicleSection {
   FOGLINE_FIELD(VehicleModel, model, VehicleModel::kPointMass,
                 "How an acceleration becomes motion.");
   FOGLINE_FIELD(CarKind, car, CarKind::kSedan, "For model longitudinal: which car.");
+
+  bool operator==(const VehicleSection&) const = default;
 };
 
 }  // namespace fogline
