@@ -23,6 +23,11 @@
 // person is there (services/runtime/seat/seat_gate.h). The output of the algorithm contains the
 // instance and the sequence number of this message, so a replay can find the message in the log.
 //
+// Algorithms can be copied, so that the copy continues the run from the same step. An algorithm
+// whose copies would share a part of the state in some scenarios has this function.
+//
+//     static bool CopiesShareState(const Scenario& scenario);
+//
 // The role that begins the steps (the world) has a function Start(run_id) for step 0. This role may
 // also have a function Prepare(). Prepare() does the slow part of step 0 before the role reports
 // that it is ready.
@@ -132,6 +137,16 @@ struct AlgorithmTraits {
   static bool UsesOnDemandInput([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kHasOnDemand) {
       return A::UsesOnDemandInput(scenario);
+    } else {
+      return false;
+    }
+  }
+
+  /// Whether a copy of the algorithm shares a part of its state in this scenario. If it does, only
+  /// one of the two objects may continue the run.
+  static bool CopiesShareState([[maybe_unused]] const Scenario& scenario) {
+    if constexpr (requires { A::CopiesShareState(scenario); }) {
+      return A::CopiesShareState(scenario);
     } else {
       return false;
     }

@@ -58,6 +58,10 @@ bool Fusion::UsesOnDemandInput(const Scenario& scenario) {
   return policies::RowOf(scenario.arbitrator.policy).needs_true_gap;
 }
 
+bool Fusion::CopiesShareState(const Scenario& scenario) {
+  return policies::RowOf(scenario.arbitrator.policy).selects_sensors;
+}
+
 const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar) {
   out_.header = ego.header;
   for (const Value value : {kRadarRange, kRadarRangeRate, kLidarRange}) {

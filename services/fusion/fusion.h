@@ -38,6 +38,8 @@ class Fusion {
   /// Whether the scenario's policy needs the truth. If it does, SetOnDemandInput() is called before
   /// every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
+  /// Copies share the policy that selects sensors.
+  static bool CopiesShareState(const Scenario& scenario);
   /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
@@ -84,7 +86,7 @@ class Fusion {
   double lidar_offset_m_;
   double initial_speed_variance_;
   double initial_acceleration_variance_;
-  std::unique_ptr<policies::EngagementPolicy>
+  std::shared_ptr<policies::EngagementPolicy>
       policy_;            // null if the policy does not select sensors
   bool selects_ = false;  // whether gate or policy may refuse a value
   policies::SensorSelection selection_;

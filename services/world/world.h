@@ -42,6 +42,11 @@ class World {
   ///     allow, or the leader comes from SUMO and this machine has no SUMO
   explicit World(const Scenario& scenario);
 
+  /// Copies share the simulation of SUMO.
+  static bool CopiesShareState(const Scenario& scenario) {
+    return scenario.lead.profile == LeadProfile::kSumo;
+  }
+
   /// Does the part of the next Start() that can take long: SUMO loads its network.
   /// @throw InputError if the leader comes from SUMO, and SUMO refuses its network or routes
   void Prepare();
@@ -109,7 +114,7 @@ class World {
   Leader leader_;
   LeaderFriction friction_;
   FogSchedule fog_;
-  std::unique_ptr<models::Traffic> traffic_;  // nullptr if the leader has a profile
+  std::shared_ptr<models::Traffic> traffic_;  // nullptr if the leader has a profile
   std::vector<models::Motion> in_traffic_;    // the host and its followers at the end of the step
   std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt if none
 
