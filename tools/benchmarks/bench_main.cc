@@ -104,7 +104,8 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", arguments.only,
                  "octave, sumo, udpm, udpm-messages, udpm-graph, key, python, memq, log, cores, "
-                 "memory; with --against: against-sweep, against-udpm, against-start (repeatable)")
+                 "thresholds, memory; with --against: against-sweep, against-udpm, against-start "
+                 "(repeatable)")
       ->allow_extra_args(false);
   app.add_option("--against", arguments.against,
                  "Compare with the build of another commit: a folder with source and build "

@@ -29,6 +29,16 @@ double SweepRowsPerSecond(int rows, int jobs) {
   return rows / nlohmann::json::parse(Sweep(rows, jobs).out)["wall_s"].get<double>();
 }
 
+/// Rows per second, on one core, of a sweep with so many thresholds of the arbitrator.
+double ThresholdRowsPerSecond(int thresholds, int seeds) {
+  const std::string grid = thresholds == 1 ? "0.5" : "0.1:0.9:" + std::to_string(thresholds);
+  const ProgramResult result =
+      RunProgram({ProgramPath("fogline"), "sweep", "scenario/dense_fog.json", "--grid",
+                  "/arbitrator/threshold=" + grid, "--seeds", "1:" + std::to_string(seeds),
+                  "--jobs", "1", "--force", "--json", "--out", ScratchFolder() / "thresholds.csv"});
+  return thresholds * seeds / nlohmann::json::parse(result.out)["wall_s"].get<double>();
+}
+
 double SweepPeakMemory_mb(int rows) {
   SweepRowsPerSecond(1, 1);  // removes the old files
   return Sweep(rows, 2).peak_memory_mb;
@@ -74,6 +84,15 @@ std::vector<Comparison> DataComparisons(Effort effort) {
        .goal = 1.9,
        .measure_ours = [rows] { return SweepRowsPerSecond(rows, 2); },
        .measure_reference = [rows] { return SweepRowsPerSecond(rows, 1); }},
+      {.name = "thresholds",
+       .quantity = "rows per second",
+       .unit = "1/s",
+       .ours = "`fogline sweep` of nine thresholds in dense fog",
+       .reference = "of one threshold",
+       .bound = Bound::kAtLeast,
+       .goal = 3,
+       .measure_ours = [full] { return ThresholdRowsPerSecond(9, full ? 200 : 50); },
+       .measure_reference = [full] { return ThresholdRowsPerSecond(1, full ? 200 : 50); }},
       {.name = "memory",
        .quantity = "peak memory",
        .unit = "MB",
