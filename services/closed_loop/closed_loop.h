@@ -10,7 +10,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include "common/errors.h"
 #include "scenario/sections/scenario.h"
 #include "services/algorithm.h"
 #include "services/closed_loop/algorithms.h"
@@ -46,6 +45,13 @@ class Messages {
  private:
   std::array<const void*, kNumChannels> messages_{};
 };
+
+/// A message of each channel. Only the messages of kStep channels are used.
+using StepMessages = decltype(std::apply(
+    [](const auto&... channel) {
+      return std::tuple<typename std::decay_t<decltype(channel)>::Message...>();
+    },
+    kGraph));
 
 /// The messages of one step; they belong to the algorithms and are valid until the next step.
 struct StepView {
@@ -100,37 +106,61 @@ class ClosedLoop {
   /// @throws InputError if a person drives
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
-    if (person_) throw InputError(std::string(kPersonNeedsRealtime));
-    // The algorithms are evaluated in their order. So an input is of the same step if its producer
-    // comes before its reader. Otherwise the input is of the previous step (LagOf() in graph.h).
-    const EndOfRun end(first().algorithm);
-    Messages messages;
-    messages.Put(first().algorithm.Start(run_id));
-    while (true) {
-      std::apply(
-          [&messages](auto& /*first*/, auto&... others) { (Compute(others, messages), ...); },
-          roles_);
-      visit(StepView(messages));
-      if (messages.Get<truth_t>().last) return;
-      Compute(first(), messages);
-    }
+    const Ending ending(*this);
+    Begin(run_id);
+    do {
+      ComputeBeforeArbitrator();
+      Arbitrate();
+      ComputeAfterArbitrator();
+      visit(StepView(messages_));
+    } while (Advance());
+  }
+
+  // The parts of Run(), for SharedRuns.
+
+  /// Ends the run of a loop, even if a step throws.
+  class Ending {
+   public:
+    explicit Ending(ClosedLoop& loop) : loop_(loop) {}
+    ~Ending() { loop_.End(); }
+    Ending(const Ending&) = delete;
+    Ending& operator=(const Ending&) = delete;
+
+   private:
+    ClosedLoop& loop_;
+  };
+
+  /// Ends the run, which may have further steps.
+  void End();
+  /// Computes the first role's messages of step 0. @throws InputError if a person drives
+  void Begin(std::int64_t run_id);
+  /// Compute the messages of a step: of the roles between the first role and the arbitrator, of the
+  /// arbitrator, and of the roles after the arbitrator.
+  void ComputeBeforeArbitrator();
+  void Arbitrate() { ArbitrateFor(*this); }
+  void ComputeAfterArbitrator();
+  /// Computes the first role's messages of the next step. @return false after the last step
+  bool Advance();
+
+  /// Resets only the arbitrator, for a run that begins with the steps of another loop. For each of
+  /// these steps, ArbitrateFor() is called. LeaveFrom() then makes the run independent.
+  void RestartArbitrator(const Scenario& scenario);
+  /// Computes the arbitrator's message from the messages of `shared`.
+  void ArbitrateFor(const ClosedLoop& shared);
+  /// Whether the last messages of both arbitrators have the same effect on the other roles.
+  bool CommandsAs(const ClosedLoop& other) const;
+  /// Copies the state of all other roles, and the messages of the step. ComputeAfterArbitrator()
+  /// comes next. @pre ArbitrateFor(shared) was called in this step
+  void LeaveFrom(const ClosedLoop& shared);
+  /// The step of `shared` with the message of this loop's arbitrator.
+  template <class Visit>
+  void VisitStepOf(const ClosedLoop& shared, Visit&& visit) const {
+    Messages messages = shared.messages_;
+    messages.Put(*command_);
+    visit(StepView(messages));
   }
 
  private:
-  using First = std::tuple_element_t<0, Algorithms>;
-
-  /// Ends the run of the role that begins the steps, even if a step throws.
-  class EndOfRun {
-   public:
-    explicit EndOfRun(First& first) : first_(first) {}
-    ~EndOfRun() { first_.End(); }
-    EndOfRun(const EndOfRun&) = delete;
-    EndOfRun& operator=(const EndOfRun&) = delete;
-
-   private:
-    First& first_;
-  };
-
   /// An algorithm, and whether it uses its input on demand in this scenario (services/algorithm.h).
   template <class A>
   struct RoleOf {
@@ -161,24 +191,23 @@ class ClosedLoop {
     }
   };
   using Roles = RolesOf<Algorithms>;
+  static constexpr std::size_t kNumRoles = std::tuple_size_v<Algorithms>;
+  /// Position of the arbitrator in the order of evaluation.
+  static constexpr auto kArbitrator = static_cast<std::size_t>(Role::kArbitrator);
 
-  auto& first() { return std::get<0>(roles_); }
+  auto& First() { return std::get<0>(roles_).algorithm; }
 
-  /// Computes a role's messages of a step from the newest messages.
-  template <class A>
-  static void Compute(RoleOf<A>& role, Messages& messages) {
-    using Traits = AlgorithmTraits<A>;
-    if constexpr (Traits::kHasOnDemand) {
-      using M = std::tuple_element_t<0, typename Traits::OnDemand>;
-      if (role.uses_on_demand) role.algorithm.SetOnDemandInput(messages.Get<M>());
-    }
-    [&]<class... In>(std::type_identity<std::tuple<In...>>) {
-      messages.Put(role.algorithm.Step(messages.Get<In>()...));
-    }(std::type_identity<typename Traits::Inputs>{});
-  }
+  /// Computes the messages of the roles from position `Begin` up to, but not including, `End`. The
+  /// algorithms are evaluated in their order. So an input is of the same step if its producer comes
+  /// before its reader. Otherwise the input is of the previous step (LagOf() in graph.h).
+  template <std::size_t Begin, std::size_t End>
+  void ComputeRoles();
 
   bool person_;  // whether the scenario has a person who drives
   Roles::Type roles_;
+  Messages messages_;                       // newest messages of the run
+  const arbitration_t* command_ = nullptr;  // newest message of the arbitrator
+  StepMessages copies_;                     // messages of the step in which the run left another
 };
 
 /// A ClosedLoop for one run after another, with the same or other scenarios. Only one thread may

@@ -1,6 +1,5 @@
 #include "tools/study/paired_worker.h"
 
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <type_traits>
@@ -9,7 +8,6 @@
 #include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/comparison.h"
-#include "tools/sweep/engine.h"
 
 namespace fogline::study {
 namespace {
@@ -46,14 +44,10 @@ RunValues ValuesOf(metrics::RunMetrics measures, const metrics::PairedMetrics& p
 
 std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios,
                                              std::int64_t seed) {
-  baseline_.clear();
-  loop_.Run(scenarios.front(), seed,
-            [this](const closed_loop::StepView& step) { baseline_.push_back(step.ToSample()); });
+  std::vector<Scenario> of_seed(scenarios.begin(), scenarios.end());
+  for (Scenario& scenario : of_seed) scenario.seed = seed;
   std::vector<RunValues> runs;
-  for (const Scenario& scenario : scenarios.subspan(1)) {
-    scenario_ = scenario;
-    scenario_.seed = seed;
-    const sweep::SweepRow row = sweep::RunPaired(loop_, scenario_, baseline_);
+  for (const sweep::PairedRow& row : runs_.Run(of_seed)) {
     runs.push_back(ValuesOf(row.measures, row.paired));
   }
   return runs;
@@ -62,7 +56,7 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
 RunValues PairedWorker::OfBaseline(const Scenario& scenario) const {
   metrics::MetricsAccumulator measures(scenario);
   metrics::PairedAccumulator pair(scenario);
-  for (const metrics::Sample& sample : baseline_) {
+  for (const metrics::Sample& sample : runs_.baseline()) {
     measures.Add(sample);
     pair.Add(sample, sample);
   }

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "scenario/sections/scenario.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/metrics/sample.h"
+#include "tools/sweep/paired_runs.h"
 
 namespace fogline::study {
 
@@ -28,9 +27,7 @@ class PairedWorker {
   RunValues OfBaseline(const Scenario& scenario) const;
 
  private:
-  closed_loop::ReusedLoop loop_;
-  Scenario scenario_;
-  std::vector<metrics::Sample> baseline_;
+  sweep::PairedRuns runs_;
 };
 
 }  // namespace fogline::study

@@ -2,7 +2,9 @@
 
 #include <oneapi/tbb/info.h>
 
+#include <algorithm>
 #include <exception>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -12,52 +14,57 @@
 
 namespace fogline::sweep {
 
-SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
-                   std::span<const metrics::Sample> baseline) {
-  metrics::MetricsAccumulator measures(scenario);
-  metrics::PairedAccumulator pair(scenario);
-  std::size_t i = 0;
-  loop.Run(scenario, [&](const closed_loop::StepView& step) {
-    const metrics::Sample sample = step.ToSample();
-    measures.Add(sample);
-    if (i < baseline.size()) pair.Add(baseline[i++], sample);
-  });
-  return {.measures = measures.Result(), .paired = pair.Result(), .without = {}};
-}
+namespace {
+
+/// The rows that are computed at once. More rows would save little time, and need more memory.
+constexpr std::int64_t kRowsAtOnce = 32;
+
+}  // namespace
 
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
-  baseline_.clear();
-  for (std::int64_t row = 0; row < plan_.rows_per_unit(); ++row) {
-    try {
-      plan_.Configure(unit, row, scenario_);
-      rows.push_back(ComputeRow());
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: error: {} (at {})", plan_.file(), error.what(),
-                                   plan_.NameOf(unit, row)));
-    } catch (const std::exception& error) {
-      throw std::runtime_error(
-          fmt::format("{}: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, row)));
+  std::int64_t at = 0;
+  try {
+    for (std::int64_t begin = 0; begin < plan_.rows_per_unit(); begin += kRowsAtOnce) {
+      ComputeRows(unit, begin, std::min(begin + kRowsAtOnce, plan_.rows_per_unit()), at, rows);
     }
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("{}: error: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, at)));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(
+        fmt::format("{}: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, at)));
   }
 }
 
-SweepRow SweepWorker::ComputeRow() {
-  const Policy policy = scenario_.arbitrator.policy;
-  if (baseline_.empty() && policy != Policy::kNone) {
-    scenario_.arbitrator.policy = Policy::kNone;
-    metrics::FogEffectAccumulator effect;
-    loop_.Run(scenario_, [&](const closed_loop::StepView& step) {
-      baseline_.push_back(step.ToSample());
-      effect.Add(baseline_.back());
-    });
-    effect_ = effect.Result();
-    scenario_.arbitrator.policy = policy;
+void SweepWorker::ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end,
+                              std::int64_t& at, std::vector<SweepRow>& rows) {
+  const auto count = static_cast<std::size_t>(end - begin);
+  scenarios_.resize(1 + count, plan_.base());
+  for (at = begin; at < end; ++at) {
+    plan_.Configure(unit, at, scenarios_[1 + static_cast<std::size_t>(at - begin)]);
   }
-  if (policy == Policy::kNone) return RunPaired(loop_, scenario_, {});
-  SweepRow row = RunPaired(loop_, scenario_, baseline_);
-  row.without = effect_;
-  return row;
+  const std::span all(scenarios_);
+  std::vector<PairedRow> computed;
+  const std::size_t before = begin == 0 ? 1 : 0;  // runs before the first row
+  try {
+    if (begin == 0) {
+      scenarios_[0] = scenarios_[1];
+      scenarios_[0].arbitrator.policy = Policy::kNone;
+      computed = runs_.Run(all);
+    } else {
+      computed = runs_.RunMore(all.subspan(1));
+    }
+  } catch (...) {
+    at = begin + static_cast<std::int64_t>(std::max(runs_.current(), before) - before);
+    throw;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool own_pair = scenarios_[1 + i].arbitrator.policy == Policy::kNone;
+    rows.push_back({.measures = computed[i].measures,
+                    .paired = own_pair ? metrics::PairedMetrics() : computed[i].paired,
+                    .without = own_pair ? metrics::FogEffect() : runs_.effect()});
+  }
 }
 
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,

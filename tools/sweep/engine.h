@@ -3,14 +3,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "services/closed_loop/closed_loop.h"
+#include "scenario/sections/scenario.h"
 #include "services/metrics/fog_effect.h"
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/safety_improvement.h"
+#include "tools/sweep/paired_runs.h"
 #include "tools/sweep/plan.h"
 
 namespace fogline::sweep {
@@ -26,32 +25,25 @@ struct SweepRow {
   metrics::FogEffect without;
 };
 
-/// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
-/// empty if the run has no traded control itself. If one run of the pair ends early, the measures
-/// of the pair use only the steps that both runs have. @throws as ReusedLoop::Run()
-SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
-                   std::span<const metrics::Sample> baseline);
-
 /// Computes units of a plan, one after another. Only one thread may use a worker. A worker keeps
 /// its buffers from unit to unit.
 class SweepWorker {
  public:
-  explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}
+  explicit SweepWorker(const SweepPlan& plan) : plan_(plan) {}
 
   /// The rows of a unit, in order. @throws InputError or std::runtime_error whose text names the
   /// row
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// The row of scenario_. Before the first row of a unit, ComputeRow() makes the paired run
-  /// without traded control.
-  SweepRow ComputeRow();
+  /// Computes some rows of a unit at once. @param at set to the row that is computed
+  void ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end, std::int64_t& at,
+                   std::vector<SweepRow>& rows);
 
   const SweepPlan& plan_;
-  Scenario scenario_;
-  closed_loop::ReusedLoop loop_;
-  std::vector<metrics::Sample> baseline_;
-  metrics::FogEffect effect_;  // effect of the fog in the baseline
+  /// The scenario without traded control, and the scenarios of the rows.
+  std::vector<Scenario> scenarios_;
+  PairedRuns runs_;
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.

@@ -52,4 +52,10 @@ inline std::string DigestOf(closed_loop::ClosedLoop& loop) {
   return digest.Hex();
 }
 
+/// The digest of the run of a new loop.
+inline std::string FreshDigest(const Scenario& scenario) {
+  closed_loop::ClosedLoop loop(scenario);
+  return DigestOf(loop);
+}
+
 }  // namespace fogline::test
