@@ -5,7 +5,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc_controller.h"
-#include "services/follower/car_driver.h"
+#include "services/follower/driver_action.h"
 #include "services/models/aeb/aeb.h"
 #include "services/models/driver/situation.h"
 

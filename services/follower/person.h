@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scenario/sections/traffic.h"
-#include "services/follower/car_driver.h"
+#include "services/follower/driver_action.h"
 #include "services/models/aeb/aeb.h"
 #include "services/models/driver/fog_sight.h"
 #include "services/models/driver/human_driver.h"
