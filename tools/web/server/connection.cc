@@ -368,8 +368,8 @@ void BeastConnection::Close(CloseCode code, const std::string& why,
                             std::chrono::milliseconds limit) {
   reason_.emplace(static_cast<websocket::close_code>(code), why.substr(0, 120));
   // A client that is cut off gets only the reason. When the program ends, a client also gets the
-  // frames that wait for it.
-  if (code != CloseCode::kGoingAway) queue_.Clear(writing_);
+  // frames that wait for it, unless it is slow: then the reason would come too late.
+  if (code != CloseCode::kGoingAway || queue_.bytes() > kPauseBytes) queue_.Clear(writing_);
   farewell_.expires_after(limit);
   farewell_.async_wait([self = shared_from_this()](error_code stopped) {
     if (!stopped) self->Leave();
