@@ -23,8 +23,8 @@
 // person is there (services/runtime/seat/seat_gate.h). The output of the algorithm contains the
 // instance and the sequence number of this message, so a replay can find the message in the log.
 //
-// Algorithms can be copied, so that the copy continues the run from the same step. An algorithm
-// whose copies would share a part of the state in some scenarios has this function.
+// Every algorithm but the arbitrator can be copied. The copy continues the run from the same step.
+// An algorithm whose copies would share a part of the state in some scenarios has this function.
 //
 //     static bool CopiesShareState(const Scenario& scenario);
 //

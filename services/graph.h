@@ -131,6 +131,8 @@ inline constexpr std::tuple kGraph{
                               Role::kDriver,
                               {Role::kArbitrator},
                               "acceleration a_H of the human driver, readiness"},
+    // The closed loop computes runs together as long as their HOST_COMMAND has the same effect. If
+    // a role reads one more field, ClosedLoop::CommandsAs() must compare this field.
     Channel<arbitration_t>{"HOST_COMMAND",
                            Pace::kStep,
                            Role::kArbitrator,

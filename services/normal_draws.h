@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "common/random.h"
@@ -40,10 +39,10 @@ class NormalDraws {
   }
 
   /// Takes over the numbers that another object has kept, if they are the same numbers.
-  void Keep(NormalDraws&& other) {
+  void Keep(const NormalDraws& other) {
     if (other.random_ == random_ && other.index_ == index_ &&
         other.kept_->capacity() >= kept_->capacity()) {
-      kept_ = std::move(other.kept_);
+      kept_ = other.kept_;
     }
   }
 

@@ -24,10 +24,6 @@ const auto& StepOf(A& algorithm, bool uses_on_demand, const Messages& messages) 
   (std::type_identity<typename Traits::Inputs>{});
 }
 
-bool SameBits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
 }  // namespace
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
@@ -42,15 +38,15 @@ void ClosedLoop::RestartArbitrator(const Scenario& scenario) {
   std::get<kArbitrator>(roles_).Restart(scenario);
 }
 
-template <std::size_t Begin, std::size_t End>
+template <std::size_t kBegin, std::size_t kEnd>
 void ClosedLoop::ComputeRoles() {
   [this]<std::size_t... I>(std::index_sequence<I...>) {
     const auto compute = [this](auto& role) {
       messages_.Put(StepOf(role.algorithm, role.uses_on_demand, messages_));
     };
-    (compute(std::get<Begin + I>(roles_)), ...);
+    (compute(std::get<kBegin + I>(roles_)), ...);
   }
-  (std::make_index_sequence<End - Begin>{});
+  (std::make_index_sequence<kEnd - kBegin>{});
 }
 
 void ClosedLoop::Begin(std::int64_t run_id) {
@@ -80,10 +76,9 @@ void ClosedLoop::ArbitrateFor(const ClosedLoop& shared) {
 }
 
 bool ClosedLoop::CommandsAs(const ClosedLoop& other) const {
-  // The other roles use no other field (services/world, services/driver).
-  return SameBits(command_->acceleration_mps2, other.command_->acceleration_mps2) &&
-         SameBits(command_->lambda_automation, other.command_->lambda_automation) &&
-         SameBits(command_->lambda_human, other.command_->lambda_human) &&
+  // The world reads only the acceleration, and the driver only the mode.
+  return std::bit_cast<std::uint64_t>(command_->acceleration_mps2) ==
+             std::bit_cast<std::uint64_t>(other.command_->acceleration_mps2) &&
          command_->mode == other.command_->mode;
 }
 

@@ -53,7 +53,7 @@ using StepMessages = decltype(std::apply(
     },
     kGraph));
 
-/// The messages of one step; they belong to the algorithms and are valid until the next step.
+/// The messages of one step. They are valid until the next step.
 struct StepView {
   explicit StepView(const Messages& messages)
       : truth(messages.Get<truth_t>()),
@@ -94,6 +94,8 @@ class ClosedLoop {
  public:
   /// @throws InputError if the weights of an ACC make an ill-conditioned problem.
   explicit ClosedLoop(const Scenario& scenario);
+  ClosedLoop(const ClosedLoop&) = delete;
+  ClosedLoop& operator=(const ClosedLoop&) = delete;
 
   /// Resets the object for another run. This run equals the run of a new ClosedLoop(scenario) bit
   /// by bit. Restart() is cheaper than a new object, because an ACC with an unchanged section keeps
@@ -130,7 +132,7 @@ class ClosedLoop {
     ClosedLoop& loop_;
   };
 
-  /// Ends the run, which may have further steps.
+  /// Ends the run, also before its last step.
   void End();
   /// Computes the first role's messages of step 0. @throws InputError if a person drives
   void Begin(std::int64_t run_id);
@@ -197,10 +199,10 @@ class ClosedLoop {
 
   auto& First() { return std::get<0>(roles_).algorithm; }
 
-  /// Computes the messages of the roles from position `Begin` up to, but not including, `End`. The
+  /// Computes the messages of the roles from position kBegin up to, but not including, kEnd. The
   /// algorithms are evaluated in their order. So an input is of the same step if its producer comes
   /// before its reader. Otherwise the input is of the previous step (LagOf() in graph.h).
-  template <std::size_t Begin, std::size_t End>
+  template <std::size_t kBegin, std::size_t kEnd>
   void ComputeRoles();
 
   bool person_;  // whether the scenario has a person who drives

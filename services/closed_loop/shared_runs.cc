@@ -21,6 +21,7 @@ bool CanBeCopied(const Scenario& scenario) {
 }  // namespace
 
 bool MayShareSteps(const Scenario& a, const Scenario& b) {
+  if (a == b) return true;
   if (!CanBeCopied(a) || !CanBeCopied(b)) return false;
   Scenario other = b;
   other.arbitrator = a.arbitrator;
@@ -42,13 +43,13 @@ std::vector<SharedRuns::Group> SharedRuns::GroupsOf(std::span<const Scenario> sc
   return groups;
 }
 
-void SharedRuns::Prepare(std::span<const Scenario> scenarios, const Group& group) {
-  loops_.reserve(scenarios.size());
-  for (const std::size_t run : group) {
+void SharedRuns::Prepare(std::span<const Scenario> scenarios, const std::vector<Group>& groups) {
+  for (std::size_t run = 0; run < scenarios.size(); ++run) {
     current_ = run;
-    // A loop of a later group may not exist yet.
-    while (loops_.size() <= run) loops_.emplace_back(scenarios[run]);
-    if (run == group.front()) {
+    const auto begins = [run](const Group& group) { return group.front() == run; };
+    if (run == loops_.size()) {
+      loops_.emplace_back(scenarios[run]);
+    } else if (std::ranges::any_of(groups, begins)) {
       loops_[run].Restart(scenarios[run]);
     } else {
       loops_[run].RestartArbitrator(scenarios[run]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,8 +26,10 @@ class SharedRuns {
   /// @throws the exceptions of ClosedLoop; current() is then the run that has thrown
   template <class Visit>
   void Run(std::span<const Scenario> scenarios, Visit&& visit) {
-    for (Group& group : GroupsOf(scenarios)) {
-      Prepare(scenarios, group);
+    std::vector<Group> groups = GroupsOf(scenarios);
+    Prepare(scenarios, groups);
+    for (Group& group : groups) {
+      current_ = group.front();
       const ClosedLoop::Ending ending(Front(group));
       Front(group).Begin(0);
       std::vector<Group> left;
@@ -35,7 +38,7 @@ class SharedRuns {
     }
   }
 
-  /// The run that is computed at present, or has thrown an exception.
+  /// The run whose exception Run() has thrown. @pre Run() has thrown
   std::size_t current() const { return current_; }
 
  private:
@@ -44,8 +47,8 @@ class SharedRuns {
 
   /// Divides the runs into groups that may share steps. The first run is in the first group.
   static std::vector<Group> GroupsOf(std::span<const Scenario> scenarios);
-  /// Makes a loop for each scenario of the group.
-  void Prepare(std::span<const Scenario> scenarios, const Group& group);
+  /// Makes a loop for each scenario, in their order.
+  void Prepare(std::span<const Scenario> scenarios, const std::vector<Group>& groups);
   /// The loop that computes the steps of the group.
   ClosedLoop& Front(const Group& group) { return loops_[group.front()]; }
   /// Computes the next step of the group up to the arbitrators. Moves the runs whose arbitrators do
@@ -69,12 +72,12 @@ class SharedRuns {
     for (Group& other : left) RunGroup(std::move(other), {}, visit);
   }
 
-  std::vector<ClosedLoop> loops_;  // by position of the run
+  std::deque<ClosedLoop> loops_;  // by position of the run
   std::size_t current_ = 0;
 };
 
-/// Whether the runs of two scenarios may share steps: the scenarios differ only in the arbitrator,
-/// and the state of every other role can be copied.
+/// Whether the runs of two scenarios may share steps. The scenarios must be equal, or they differ
+/// only in the arbitrator and the state of every other role can be copied.
 bool MayShareSteps(const Scenario& a, const Scenario& b);
 
 }  // namespace fogline::closed_loop

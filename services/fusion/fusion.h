@@ -87,7 +87,7 @@ class Fusion {
   double initial_speed_variance_;
   double initial_acceleration_variance_;
   std::shared_ptr<policies::EngagementPolicy>
-      policy_;            // null if the policy does not select sensors
+      policy_;            // null if the policy does not select sensors; shared with copies
   bool selects_ = false;  // whether gate or policy may refuse a value
   policies::SensorSelection selection_;
   std::optional<double> true_gap_m_;

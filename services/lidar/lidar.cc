@@ -34,7 +34,7 @@ Lidar::Lidar(const Scenario& scenario)
 
 void Lidar::Restart(const Scenario& scenario) {
   Lidar other(scenario);
-  other.noise_.Keep(std::move(noise_));
+  other.noise_.Keep(noise_);
   *this = std::move(other);
 }
 

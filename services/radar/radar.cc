@@ -27,7 +27,7 @@ Radar::Radar(const Scenario& scenario)
 
 void Radar::Restart(const Scenario& scenario) {
   Radar other(scenario);
-  other.noise_.Keep(std::move(noise_));
+  other.noise_.Keep(noise_);
   *this = std::move(other);
 }
 

@@ -114,8 +114,9 @@ class World {
   Leader leader_;
   LeaderFriction friction_;
   FogSchedule fog_;
-  std::shared_ptr<models::Traffic> traffic_;  // nullptr if the leader has a profile
-  std::vector<models::Motion> in_traffic_;    // the host and its followers at the end of the step
+  std::shared_ptr<models::Traffic>
+      traffic_;  // nullptr if the leader has a profile; shared with copies
+  std::vector<models::Motion> in_traffic_;  // the host and its followers at the end of the step
   std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt if none
 
   bool prepared_ = false;  // whether the cars have their places of step 0

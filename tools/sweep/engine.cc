@@ -23,26 +23,25 @@ constexpr std::int64_t kRowsAtOnce = 32;
 
 void SweepWorker::Compute(std::int64_t unit, std::vector<SweepRow>& rows) {
   rows.clear();
-  std::int64_t at = 0;
   try {
     for (std::int64_t begin = 0; begin < plan_.rows_per_unit(); begin += kRowsAtOnce) {
-      ComputeRows(unit, begin, std::min(begin + kRowsAtOnce, plan_.rows_per_unit()), at, rows);
+      ComputeRows(unit, begin, std::min(begin + kRowsAtOnce, plan_.rows_per_unit()), rows);
     }
   } catch (const InputError& error) {
     throw InputError(
-        fmt::format("{}: error: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, at)));
+        fmt::format("{}: error: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, row_)));
   } catch (const std::exception& error) {
     throw std::runtime_error(
-        fmt::format("{}: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, at)));
+        fmt::format("{}: {} (at {})", plan_.file(), error.what(), plan_.NameOf(unit, row_)));
   }
 }
 
 void SweepWorker::ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end,
-                              std::int64_t& at, std::vector<SweepRow>& rows) {
+                              std::vector<SweepRow>& rows) {
   const auto count = static_cast<std::size_t>(end - begin);
   scenarios_.resize(1 + count, plan_.base());
-  for (at = begin; at < end; ++at) {
-    plan_.Configure(unit, at, scenarios_[1 + static_cast<std::size_t>(at - begin)]);
+  for (row_ = begin; row_ < end; ++row_) {
+    plan_.Configure(unit, row_, scenarios_[1 + static_cast<std::size_t>(row_ - begin)]);
   }
   const std::span all(scenarios_);
   std::vector<PairedRow> computed;
@@ -56,7 +55,7 @@ void SweepWorker::ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_
       computed = runs_.RunMore(all.subspan(1));
     }
   } catch (...) {
-    at = begin + static_cast<std::int64_t>(std::max(runs_.current(), before) - before);
+    row_ = begin + static_cast<std::int64_t>(std::max(runs_.current(), before) - before);
     throw;
   }
   for (std::size_t i = 0; i < count; ++i) {

@@ -36,14 +36,15 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// Computes some rows of a unit at once. @param at set to the row that is computed
-  void ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end, std::int64_t& at,
+  /// Computes some rows of a unit at once.
+  void ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end,
                    std::vector<SweepRow>& rows);
 
   const SweepPlan& plan_;
   /// The scenario without traded control, and the scenarios of the rows.
   std::vector<Scenario> scenarios_;
   PairedRuns runs_;
+  std::int64_t row_ = 0;  // the row that is computed, or cannot be computed
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.

@@ -36,15 +36,28 @@ TEST(NormalDrawsTest, KeepTheNumbersOfAnotherRunOnlyIfTheyAreTheSame) {
       NormalDraws before = DrawsOf(1);
       ExpectNumbersOf(1, before);
       NormalDraws draws = DrawsOf(seed, steps);
-      draws.Keep(std::move(before));
+      draws.Keep(before);
       ExpectNumbersOf(seed, draws);
     }
   }
   NormalDraws before = DrawsOf(1);
   ExpectNumbersOf(1, before);
   NormalDraws other(Random(1, Stream::kLidar), kDraw, 10);
-  other.Keep(std::move(before));
+  other.Keep(before);
   EXPECT_EQ(other.At(0), Random(1, Stream::kLidar).Normal2(0, kDraw));
+}
+
+TEST(NormalDrawsTest, OfACopyAreTheSameWhicheverDrawsFirst) {
+  NormalDraws draws = DrawsOf(1);
+  draws.At(3);
+  NormalDraws copy = draws;
+  copy.At(5);
+  ExpectNumbersOf(1, draws);
+  ExpectNumbersOf(1, copy);
+  NormalDraws next = DrawsOf(1);
+  next.Keep(copy);
+  ExpectNumbersOf(1, next);
+  ExpectNumbersOf(1, copy);
 }
 
 }  // namespace
