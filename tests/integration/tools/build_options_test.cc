@@ -69,6 +69,18 @@ TEST(BuildOptionsTest, CompileFilesTogetherUnlessEachIsToBeCompiledAlone) {
   EXPECT_THAT(alone, HasSubstr("services/world/fog_schedule.cc"));
 }
 
+TEST(BuildOptionsTest, BuildForARunNeitherThePageNorTheRelay) {
+  const ConfiguredBuild build({});
+  const std::string run = build.InputsOf("fogline_run");
+  for (const char* part : {"fogline-world.dir", "fogline-recorder.dir", "fogline_report"}) {
+    EXPECT_THAT(run, HasSubstr(part));
+  }
+  for (const char* part : {"fogline_web", "fogline-web", "fogline_relay", "boost_asio"}) {
+    EXPECT_THAT(run, Not(HasSubstr(part)));
+    EXPECT_THAT(build.InputsOf("fogline_demo"), HasSubstr(part));
+  }
+}
+
 TEST(BuildOptionsTest, BuildForTheDemoNeitherStudiesNorCalibrationNorBenchmarks) {
   const ConfiguredBuild build({});
   const std::string demo = build.InputsOf("fogline_demo");

@@ -67,17 +67,39 @@ std::string NamedAs(const std::string& name, const std::string& said) {
 }
 
 constexpr const char* kBuildNotice =
-    "building the programs for the experiment: two to four minutes";
+    "building the programs for the experiment: two to three minutes";
+constexpr const char* kPageNotice = "building the program that shows a run in a browser";
+constexpr const char* kCalls =
+    "tools/setup run\ntools/build fogline_run\ntools/build fogline_demo\n";
 
 TEST(DemoTest, BuildsOnlyItsPartsAndSaysAtFirstThatThisTakesLong) {
   const DemoFolder folder;
   const Outcome first = RunCommand(folder.Typed("tools/demo"));
   EXPECT_EQ(first.code, 0) << first.err;
   EXPECT_THAT(first.err, HasSubstr(kBuildNotice));
-  EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\ntools/build fogline_demo\n");
+  EXPECT_EQ(Content(folder.path() / "calls"), kCalls);
   const Outcome again = RunCommand(folder.Typed("tools/demo"));
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.err, Not(HasSubstr(kBuildNotice)));
+}
+
+TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
+  const DemoFolder folder;
+  folder.Write("build",
+               "[ $1 = fogline_run ] || exit 3\n"
+               "mkdir -p build/bin\n"
+               "ln -s " +
+                   ProgramDirectory().string() +
+                   "/* build/bin\n"
+                   "rm build/bin/fogline-web build/bin/fogline-relay");
+  const Outcome demo = RunCommand(folder.Typed("tools/demo"));
+  EXPECT_EQ(demo.code, 3) << demo.out << demo.err;
+  EXPECT_EQ(Content(folder.path() / "calls"), kCalls);
+  EXPECT_THAT(demo.out, HasSubstr("published SI"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / NamedAs("report", demo.out)));
+  EXPECT_THAT(demo.err, HasSubstr(kPageNotice));
+  // The last build failed, so the demo does not name a program that is missing.
+  EXPECT_EQ(NamedAs("view", demo.out), "");
 }
 
 TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
@@ -85,12 +107,11 @@ TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
   const std::string link = folder.BuildCommands();
   folder.Write("build", link + "; until [ -e go ]; do sleep 0.05; done");
   Background first(folder.Typed("tools/demo"));
-  ASSERT_TRUE(ComesToHave("tools/build fogline_demo\n", folder.path() / "calls"));
+  ASSERT_TRUE(ComesToHave("tools/build fogline_run\n", folder.path() / "calls"));
   Background second(folder.Typed("tools/demo"));
   EXPECT_TRUE(second.WaitForErr("waiting for another tools/demo in this folder ..."));
-  const std::string calls = "tools/setup run\ntools/build fogline_demo\n";
-  EXPECT_EQ(Content(folder.path() / "calls"), calls);
-  // The second one begins when the report of the first one is made.
+  EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\ntools/build fogline_run\n");
+  // The second one begins when the first one has ended.
   folder.Write("setup", "[ ! -e logs/demo/report.html ] || echo after the report >>calls");
   std::ofstream(folder.path() / "go") << "";
   for (Background* demo : {&first, &second}) {
@@ -98,7 +119,9 @@ TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
     EXPECT_THAT(demo->Out(), HasSubstr("report: logs/demo/report.html"));
   }
   EXPECT_EQ(Content(folder.path() / "calls"),
-            calls + "tools/setup run\nafter the report\ntools/build fogline_demo\n");
+            std::string(kCalls) +
+                "tools/setup run\nafter the report\n"
+                "tools/build fogline_run\ntools/build fogline_demo\n");
 }
 
 TEST(DemoTest, NamesItsFilesAndTheCommandThatShowsARunInABrowser) {
