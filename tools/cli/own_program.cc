@@ -39,7 +39,7 @@ void BecomeOwnProgram(int argc, char** argv) {
   if (help || completes) argv[2] = option.data();
   execv(path.c_str(), argv + 1);
   Complain(fmt::format("fogline {}: error: {}: {}{}", verb, path, std::strerror(errno),
-                       errno == ENOENT ? "; it is built by: ninja -C build " + name : ""));
+                       errno == ENOENT ? processes::HowToBuild(name) : ""));
   std::exit(kRunFailed);
 }
 

@@ -155,6 +155,17 @@ std::string HowItEnded(int status) {
 
 std::filesystem::path ProgramBeside(std::string_view name) { return OwnFolder() / name; }
 
+std::string HowToBuild(std::string_view name) {
+  return fmt::format("; it is built by: ninja -C build {}", name);
+}
+
+std::filesystem::path BuiltProgramBeside(std::string_view name) {
+  std::filesystem::path program = ProgramBeside(name);
+  if (std::filesystem::exists(program)) return program;
+  throw std::runtime_error(fmt::format("cannot start {}: {}{}", program.string(),
+                                       std::strerror(ENOENT), HowToBuild(name)));
+}
+
 std::filesystem::path ProgramOf(Role role) {
   return ProgramBeside(fmt::format("fogline-{}", NameOf(role)));
 }

@@ -79,6 +79,11 @@ std::string HowItEnded(int status);
 
 /// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
+/// The end of an error about a program that is missing, because not every build has it.
+std::string HowToBuild(std::string_view name);
+/// As ProgramBeside(), for a program that not every build has.
+/// @throws std::runtime_error when it is missing. The error names the command that builds it.
+std::filesystem::path BuiltProgramBeside(std::string_view name);
 /// The program of a role in the folder of the running program.
 std::filesystem::path ProgramOf(Role role);
 

@@ -25,7 +25,7 @@ RelayProcess::RelayProcess(int restarts, const std::string& place)
 RelayProcess::~RelayProcess() { End(); }
 
 std::string RelayProcess::Start(const std::string& place) {
-  const std::filesystem::path program = ProgramBeside("fogline-relay");
+  const std::filesystem::path program = BuiltProgramBeside("fogline-relay");
   Pipe output;
   // The relay prints on the runner's stderr which clients it disconnects.
   pid_ = StartChild(program, {"--listen", place, "--quiet"}, output.write);

@@ -33,7 +33,7 @@ void WebChild::Start(const std::vector<std::string>& arguments, const std::strin
   Pipe in;
   [[maybe_unused]] const ssize_t written = write(in.write, input.data(), input.size());
   close(std::exchange(in.write, -1));
-  pid_ = StartChild(ProgramBeside("fogline-web"), arguments, output_->write, -1, in.read);
+  pid_ = StartChild(BuiltProgramBeside("fogline-web"), arguments, output_->write, -1, in.read);
   close(std::exchange(output_->write, -1));
   lines_.emplace(output_->read);
 }

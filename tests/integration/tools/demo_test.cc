@@ -1,5 +1,5 @@
-// tools/demo asks for what it needs, and its last lines name commands and files that exist. Here it
-// uses the programs of this build, and installs and compiles nothing.
+// tools/demo asks for what it needs, and names commands and files that exist. Here it uses the
+// programs of this build, and installs and compiles nothing.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// A folder in which tools/demo runs. The folder's own tools/setup installs nothing, and its own
-/// tools/build only makes a link to the programs of this build. Both write their calls into the
+/// tools/build only makes links to the programs of this build. Both write their calls into the
 /// file `calls`.
 class DemoFolder {
  public:
@@ -68,7 +68,7 @@ std::string NamedAs(const std::string& name, const std::string& said) {
 
 constexpr const char* kBuildNotice =
     "building the programs for the experiment: two to three minutes";
-constexpr const char* kPageNotice = "building the program that shows a run in a browser";
+constexpr const char* kPageNotice = "building the programs for the page of a run";
 constexpr const char* kCalls =
     "tools/setup run\ntools/build fogline_run\ntools/build fogline_demo\n";
 
@@ -81,6 +81,7 @@ TEST(DemoTest, BuildsOnlyItsPartsAndSaysAtFirstThatThisTakesLong) {
   const Outcome again = RunCommand(folder.Typed("tools/demo"));
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.err, Not(HasSubstr(kBuildNotice)));
+  EXPECT_THAT(again.err, Not(HasSubstr(kPageNotice)));
 }
 
 TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
@@ -88,15 +89,21 @@ TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
   folder.Write("build",
                "[ $1 = fogline_run ] || exit 3\n"
                "mkdir -p build/bin\n"
+               "cd build/bin\n"
                "ln -s " +
                    ProgramDirectory().string() +
-                   "/* build/bin\n"
-                   "rm build/bin/fogline-web build/bin/fogline-relay");
+                   "/fogline-* .\n"
+                   "rm fogline-web fogline-relay\n"
+                   // A copy looks for the other programs in its own folder.
+                   "cp " +
+                   Program("fogline") + " .");
   const Outcome demo = RunCommand(folder.Typed("tools/demo"));
   EXPECT_EQ(demo.code, 3) << demo.out << demo.err;
   EXPECT_EQ(Content(folder.path() / "calls"), kCalls);
   EXPECT_THAT(demo.out, HasSubstr("published SI"));
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / NamedAs("report", demo.out)));
+  EXPECT_THAT(demo.out, HasSubstr("logs:   logs/demo/"));
+  EXPECT_EQ(NamedAs("report", demo.out), "logs/demo/report.html");
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "logs/demo/report.html"));
   EXPECT_THAT(demo.err, HasSubstr(kPageNotice));
   // The last build failed, so the demo does not name a program that is missing.
   EXPECT_EQ(NamedAs("view", demo.out), "");
@@ -105,14 +112,15 @@ TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
 TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
   const DemoFolder folder;
   const std::string link = folder.BuildCommands();
-  folder.Write("build", link + "; until [ -e go ]; do sleep 0.05; done");
+  folder.Write("build", link + "; until [ -e go ]; do sleep 0.05; done\n" +
+                            "[ $1 = fogline_run ] || { sleep 0.5; touch page; }");
   Background first(folder.Typed("tools/demo"));
   ASSERT_TRUE(ComesToHave("tools/build fogline_run\n", folder.path() / "calls"));
   Background second(folder.Typed("tools/demo"));
   EXPECT_TRUE(second.WaitForErr("waiting for another tools/demo in this folder ..."));
   EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\ntools/build fogline_run\n");
   // The second one begins when the first one has ended.
-  folder.Write("setup", "[ ! -e logs/demo/report.html ] || echo after the report >>calls");
+  folder.Write("setup", "[ ! -e page ] || echo after the page >>calls");
   std::ofstream(folder.path() / "go") << "";
   for (Background* demo : {&first, &second}) {
     EXPECT_EQ(demo->Wait(), 0) << demo->Err();
@@ -120,7 +128,7 @@ TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
   }
   EXPECT_EQ(Content(folder.path() / "calls"),
             std::string(kCalls) +
-                "tools/setup run\nafter the report\n"
+                "tools/setup run\nafter the page\n"
                 "tools/build fogline_run\ntools/build fogline_demo\n");
 }
 

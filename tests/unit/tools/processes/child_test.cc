@@ -219,6 +219,15 @@ TEST(ProgramBesideTest, IsInTheFolderOfThisProgram) {
   const std::filesystem::path folder =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
   EXPECT_EQ(processes::ProgramBeside("other"), folder / "other");
+  EXPECT_EQ(processes::BuiltProgramBeside("fogline"), folder / "fogline");
+  try {
+    processes::BuiltProgramBeside("other");
+    FAIL() << "there is no such program";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "cannot start " + (folder / "other").string() +
+                                ": No such file or directory"
+                                "; it is built by: ninja -C build other");
+  }
   EXPECT_EQ(processes::ProgramOf(Role::kArbitrator), folder / "fogline-arbitrator");
 }
 
