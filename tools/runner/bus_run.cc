@@ -324,10 +324,8 @@ BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
     throw std::runtime_error(coordinator.error() + (kept.empty() ? "" : "\n  " + kept));
   }
   if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone) {
-    const std::string where = coordinator.phase() == runtime::RunCoordinator::Phase::kJoining
-                                  ? fmt::format("while waiting for {}", coordinator.NotReady())
-                                  : coordinator.Where();
-    throw Interrupted(fmt::format("interrupted {}{}{}", where, kept.empty() ? "" : "; ", kept));
+    throw Interrupted(fmt::format("interrupted {}{}{}", coordinator.WhereOrWaiting(),
+                                  kept.empty() ? "" : "; ", kept));
   }
   return run;
 }

@@ -158,6 +158,11 @@ std::string RunCoordinator::NotReady() const {
   return names;
 }
 
+std::string RunCoordinator::WhereOrWaiting() const {
+  const std::string names = phase_ == Phase::kJoining ? NotReady() : "";
+  return names.empty() ? Where() : "while waiting for " + names;
+}
+
 std::int64_t RunCoordinator::Total(std::int64_t status_t::*counter) const {
   std::int64_t total = 0;
   for (const Member& member : members_) {

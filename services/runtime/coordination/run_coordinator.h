@@ -89,6 +89,9 @@ class RunCoordinator {
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
+  /// Text such as "while waiting for fusion" if roles have not reported ready before the run
+  /// begins; otherwise as Where().
+  std::string WhereOrWaiting() const;
   /// External roles that the run waits for: roles that are not ready, and roles that send nothing
   /// while the run goes on.
   std::vector<Role> Awaited(TimePoint now) const;

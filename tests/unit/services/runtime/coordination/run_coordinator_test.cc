@@ -54,6 +54,21 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
 }
 
+TEST_F(RunCoordinatorTest, SaysForWhichRolesItWaits) {
+  for (const RoleInfo& info : kRoles) {
+    role(info.role).state = info.role == Role::kFusion ? status_t::WAITING : status_t::READY;
+    SayStatus(info.role);
+  }
+  Poll(Clock::now());
+  EXPECT_EQ(coordinator_.WhereOrWaiting(), "while waiting for fusion");
+  // The last role has come, but the coordinator has not begun the run yet.
+  role(Role::kFusion).state = status_t::READY;
+  SayStatus(Role::kFusion);
+  script_.bus().Drain();
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kJoining);
+  EXPECT_EQ(coordinator_.WhereOrWaiting(), "before step 0");
+}
+
 class JoinLimitTest : public RunCoordinatorTest {
  protected:
   using Phase = runtime::RunCoordinator::Phase;
