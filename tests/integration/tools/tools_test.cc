@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/process/programs.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -47,19 +48,37 @@ TEST_P(ToolTest, PrintsItsHelpAndDoesNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest,
                          testing::Values("demo", "test", "bench", "build", "progress", "fresh",
-                                         "format", "soak", "pictures", "mutate"),
+                                         "format", "soak", "pictures", "mutate", "setup"),
                          [](const auto& script) { return std::string(script.param); });
 
 TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   const BareShell shell;
   for (const std::string script :
        {"tools/demo", "tools/test", "tools/build", "tools/progress", "tools/fresh", "tools/format",
-        "tools/soak", "tools/pictures", "tools/mutate"}) {
+        "tools/soak", "tools/pictures", "tools/mutate", "tools/setup"}) {
     const Outcome outcome = shell.Run(script, "--fast");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err,
               script + ": error: unknown argument --fast; see " + script + " --help\n");
+  }
+}
+
+TEST(ToolsTest, RefuseAnEmptyArgument) {
+  for (const std::string script :
+       {"tools/demo", "tools/test", "tools/build", "tools/format", "tools/setup"}) {
+    const Outcome outcome = BareShell().Run(script, "");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, script + ": error: unknown argument ; see " + script + " --help\n");
+  }
+}
+
+TEST(ToolsTest, SetupNeedsOnePurpose) {
+  for (const std::string arguments : {"", " run test"}) {
+    const Outcome outcome = RunCommand({"bash", "-c", "tools/setup" + arguments});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "tools/setup: error: one PURPOSE is needed; see tools/setup --help\n");
   }
 }
 
@@ -78,20 +97,36 @@ class BuildFolder {
     std::ofstream(folder_.path() / "bin/ninja") << "#!/bin/sh\n" << ninja << "\n";
     std::filesystem::permissions(folder_.path() / "bin/ninja", std::filesystem::perms::owner_all);
   }
-  /// Calls tools/build for all targets.
-  std::vector<std::string> Command() const {
+  /// Calls tools/build for a target.
+  std::vector<std::string> Command(const std::string& target = "all") const {
     return {"env",
             "-C",
             folder_.path().string(),
             "PATH=" + folder_.File("bin") + ":" + std::getenv("PATH"),
             "tools/build",
-            "all"};
+            target};
   }
   std::filesystem::path path() const { return folder_.path(); }
 
  private:
   ScratchFolder folder_;
 };
+
+TEST(ToolsTest, BuildNamesATargetThatIsNotThere) {
+  const BuildFolder folder("exec " + FindProgram("ninja").string() + " \"$@\"");
+  std::ofstream(folder.path() / "build/build.ninja") << "build programs: phony\n";
+  const Outcome there = RunCommand(folder.Command("programs"));
+  EXPECT_EQ(there.code, 0);
+  EXPECT_EQ(there.err, "");
+  const Outcome missing = RunCommand(folder.Command("elephants"));
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_EQ(missing.err,
+            "tools/build: error: unknown target 'elephants'; see tools/build --help\n");
+  const Outcome misspelled = RunCommand(folder.Command("program"));
+  EXPECT_EQ(misspelled.code, 2);
+  EXPECT_EQ(misspelled.err,
+            "tools/build: error: unknown target 'program', did you mean 'programs'?\n");
+}
 
 TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor) {
   // GIVEN a ninja that begins the line of its first command as it is told, and then reports an
