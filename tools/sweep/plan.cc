@@ -1,6 +1,7 @@
 #include "tools/sweep/plan.h"
 
 #include <charconv>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -35,6 +36,27 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
     if (end == std::string_view::npos) return parts;
     text.remove_prefix(end + 1);
   }
+}
+
+/// The seeds of "A:B" or "A"; nullopt if the text has another form.
+std::optional<SeedRange> SeedsOf(std::string_view text) {
+  const std::vector<std::string_view> parts = Split(text, ':');
+  SeedRange seeds;
+  const bool fits = parts.size() <= 2 && Parse(parts.front(), seeds.first) &&
+                    Parse(parts.back(), seeds.last) && seeds.first >= 0 &&
+                    seeds.last >= seeds.first && seeds.last <= kMaxSeed;
+  return fits ? std::optional(seeds) : std::nullopt;
+}
+
+/// The end of the error about seeds that are written "A..B" or "A-B"; "" for other texts.
+std::string SeedsHint(const std::string& text) {
+  for (const std::string_view separator : {"..", "-"}) {
+    const std::size_t at = text.find(separator);
+    if (at == std::string::npos) continue;
+    const std::string seeds = text.substr(0, at) + ":" + text.substr(at + separator.size());
+    if (SeedsOf(seeds)) return fmt::format("; did you mean {}?", seeds);
+  }
+  return "";
 }
 
 /// The values of "first:last:count"; empty if the text has another form. Values are printed with
@@ -117,14 +139,10 @@ std::vector<double> ParseThresholds(const std::string& text) {
 }
 
 SeedRange ParseSeeds(const std::string& text) {
-  const std::vector<std::string_view> parts = Split(text, ':');
-  SeedRange seeds;
-  if (parts.size() > 2 || !Parse(parts.front(), seeds.first) || !Parse(parts.back(), seeds.last) ||
-      seeds.first < 0 || seeds.last < seeds.first || seeds.last > kMaxSeed) {
-    throw InputError(fmt::format(
-        "error: --seeds {}: neither A:B with 0 <= A <= B <= {} nor one seed", text, kMaxSeed));
-  }
-  return seeds;
+  if (const auto seeds = SeedsOf(text)) return *seeds;
+  throw InputError(
+      fmt::format("error: --seeds {}: neither A:B with 0 <= A <= B <= {} nor one seed{}", text,
+                  kMaxSeed, SeedsHint(text)));
 }
 
 Shard ParseShard(const std::string& text) {

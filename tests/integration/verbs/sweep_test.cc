@@ -260,6 +260,12 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
   EXPECT_EQ(error({"--seeds", "5:4"}),
             "fogline sweep: error: --seeds 5:4: neither A:B with 0 <= A <= B <= 9007199254740991 "
             "nor one seed\n");
+  for (const std::string text : {"1..5", "1-5"}) {
+    EXPECT_THAT(error({"--seeds", text}), testing::EndsWith("nor one seed; did you mean 1:5?\n"));
+  }
+  for (const std::string text : {"1.5", "5-1", "-5", "1-5-9", ".."}) {
+    EXPECT_THAT(error({"--seeds", text}), testing::EndsWith("nor one seed\n"));
+  }
   EXPECT_EQ(error({"--seeds", "1:9007199254740992"}),
             "fogline sweep: error: --seeds 1:9007199254740992: neither A:B with 0 <= A <= B <= "
             "9007199254740991 "
