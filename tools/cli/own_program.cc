@@ -38,8 +38,9 @@ void BecomeOwnProgram(int argc, char** argv) {
   argv[1] = name.data();
   if (help || completes) argv[2] = option.data();
   execv(path.c_str(), argv + 1);
-  Complain(fmt::format("fogline {}: error: {}: {}{}", verb, path, std::strerror(errno),
-                       errno == ENOENT ? processes::HowToBuild(name) : ""));
+  const int error = errno;
+  Complain(fmt::format("fogline {}: error: {}: {}{}", verb, path, std::strerror(error),
+                       error == ENOENT ? processes::HowToBuild(name) : ""));
   std::exit(kRunFailed);
 }
 

@@ -20,6 +20,7 @@
 #include "common/file.h"
 #include "common/process/poll.h"
 #include "common/process/programs.h"
+#include "common/process/shell_word.h"
 
 namespace fogline::processes {
 namespace {
@@ -156,7 +157,14 @@ std::string HowItEnded(int status) {
 std::filesystem::path ProgramBeside(std::string_view name) { return OwnFolder() / name; }
 
 std::string HowToBuild(std::string_view name) {
-  return fmt::format("; it is built by: ninja -C build {}", name);
+  std::error_code error;
+  const std::filesystem::path build = OwnFolder().parent_path();
+  if (!std::filesystem::exists(build / "build.ninja", error)) return "";
+  const std::filesystem::path here = std::filesystem::current_path(error);  // "" if it is deleted
+  const std::filesystem::path from_here = build.lexically_relative(here);
+  const bool is_below = !from_here.empty() && *from_here.begin() != "..";
+  return fmt::format("; it is built by: ninja -C {} {}",
+                     ShellWord((is_below ? from_here : build).string()), name);
 }
 
 std::filesystem::path BuiltProgramBeside(std::string_view name) {

@@ -79,7 +79,8 @@ std::string HowItEnded(int status);
 
 /// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
-/// The end of an error about a program that is missing, because not every build has it.
+/// The end of an error about a program that is missing, because not every build has it: the command
+/// that builds it; "" if the running program is not in a build folder.
 std::string HowToBuild(std::string_view name);
 /// As ProgramBeside(), for a program that not every build has.
 /// @throws std::runtime_error when it is missing. The error names the command that builds it.

@@ -123,10 +123,21 @@ TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
   const Parts parts;
   std::filesystem::create_directory(parts.File("bin"));
   std::filesystem::copy_file(Program("fogline"), parts.File("bin/fogline"));
-  const Outcome spy = RunCommand(parts.Command(parts.File("bin/fogline"), {}));
-  EXPECT_EQ(spy.code, 3);
-  EXPECT_THAT(spy.err, HasSubstr("apt-get install default-jdk, then cmake -S . -B build -G Ninja "
-                                 "&& ninja -C build fogline_lcmtypes_java\n"));
+  std::filesystem::create_directory(parts.File("compiler"));
+  const std::string build =
+      "cmake -S . -B build -G Ninja && ninja -C build fogline_lcmtypes_java\n";
+  const auto error = [&] {
+    std::vector<std::string> command = parts.Command(parts.File("bin/fogline"), {});
+    command.insert(command.begin() + 1, "PATH=" + parts.File("compiler"));
+    command.front() = "/usr/bin/env";
+    const Outcome spy = RunCommand(command);
+    EXPECT_EQ(spy.code, 3);
+    return spy.err;
+  };
+  EXPECT_THAT(error(), HasSubstr(": apt-get install default-jdk, then " + build));
+  parts.Touch("compiler/javac");
+  parts.MakeExecutable("compiler/javac");
+  EXPECT_THAT(error(), HasSubstr(": " + build));
 }
 
 TEST(LogplayerTest, StartsLcmsOwnOnTheNetworkWithTheLog) {

@@ -65,9 +65,10 @@ fs::path TypesOf(const SpyArguments& arguments) {
   const fs::path types = spy::TypesJar(programs);
   if (!types.empty()) return types;
   throw std::runtime_error(fmt::format(
-      "there are no message types beside {}: apt-get install default-jdk, then cmake -S "
-      ". -B build -G Ninja && ninja -C build fogline_lcmtypes_java",
-      PathText(programs)));
+      "there are no message types beside {}: {}cmake -S . -B build -G Ninja && ninja -C build "
+      "fogline_lcmtypes_java",
+      PathText(programs),
+      FindProgram("javac").empty() ? "apt-get install default-jdk, then " : ""));
 }
 
 /// The command line of lcm-spy without its network. @throws InputError, std::runtime_error if

@@ -218,6 +218,7 @@ TEST(PipeTest, ClosesItsEndsAndLeavesNoneToAChild) {
 TEST(ProgramBesideTest, IsInTheFolderOfThisProgram) {
   const std::filesystem::path folder =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  EXPECT_EQ(processes::ProgramOf(Role::kArbitrator), folder / "fogline-arbitrator");
   EXPECT_EQ(processes::ProgramBeside("other"), folder / "other");
   EXPECT_EQ(processes::BuiltProgramBeside("fogline"), folder / "fogline");
   try {
@@ -225,10 +226,43 @@ TEST(ProgramBesideTest, IsInTheFolderOfThisProgram) {
     FAIL() << "there is no such program";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(error.what(), "cannot start " + (folder / "other").string() +
-                                ": No such file or directory"
-                                "; it is built by: ninja -C build other");
+                                ": No such file or directory" + processes::HowToBuild("other"));
   }
-  EXPECT_EQ(processes::ProgramOf(Role::kArbitrator), folder / "fogline-arbitrator");
+}
+
+class HowToBuildTest : public testing::Test {
+ protected:
+  HowToBuildTest() : before_(std::filesystem::current_path()) {}
+  ~HowToBuildTest() override { std::filesystem::current_path(before_); }
+
+  /// The text for a program if `folder` is the working folder.
+  static std::string From(const std::filesystem::path& folder) {
+    std::filesystem::current_path(folder);
+    return processes::HowToBuild("other");
+  }
+
+  const std::filesystem::path build_ =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+
+ private:
+  const std::filesystem::path before_;
+};
+
+TEST_F(HowToBuildTest, NamesTheBuildFolderAsSeenFromTheWorkingFolder) {
+  EXPECT_EQ(From(build_.parent_path()),
+            "; it is built by: ninja -C " + build_.filename().string() + " other");
+  EXPECT_EQ(From(build_), "; it is built by: ninja -C . other");
+  EXPECT_EQ(From("/proc"), "; it is built by: ninja -C " + build_.string() + " other");
+}
+
+TEST_F(HowToBuildTest, NeedsNoWorkingFolder) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path deleted = folder.path() / "deleted";
+  std::filesystem::create_directory(deleted);
+  std::filesystem::current_path(deleted);
+  std::filesystem::remove(deleted);
+  EXPECT_EQ(processes::HowToBuild("other"),
+            "; it is built by: ninja -C " + build_.string() + " other");
 }
 
 }  // namespace
