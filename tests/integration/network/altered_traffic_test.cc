@@ -69,7 +69,8 @@ class AlteredTrafficTest : public testing::Test {
     command.insert(command.end(), more.begin(), more.end());
     Background run(command);
     bridge.RunUntilTheEndOf(run);
-    return {.code = run.Wait(), .out = run.Out(), .err = run.Err()};
+    const int code = run.Wait();
+    return {.code = code, .out = run.Out(), .err = run.Err() + "the lidar says: " + lidar.Err()};
   }
 
   const ScratchFolder folder_;

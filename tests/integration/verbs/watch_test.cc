@@ -140,7 +140,8 @@ TEST(TopTest, LooksAtARelayToo) {
 }
 
 TEST(TopTest, ShowsALogThatLogplayerPlays) {
-  constexpr int kSteps = 100;
+  // The kernel's buffer holds all messages of so few steps, even if top gets no processor.
+  constexpr int kSteps = 12;
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--set",
