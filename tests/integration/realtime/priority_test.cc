@@ -47,19 +47,15 @@ std::vector<std::string> Realtime(const ScratchFolder& folder) {
           folder.File("run.lcm")};
 }
 
-/// On a busy machine the recorder may lack messages of a role without the priority.
-void ExpectSuccessOrALogThatIsNotWhole(const Outcome& run) {
-  if (run.code == 0) return;
-  EXPECT_EQ(run.code, kFailed) << run.err;
-  EXPECT_THAT(run.err, HasSubstr(kNotWhole));
-}
-
 TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   const ScratchFolder folder;
   std::vector<std::string> command = WithoutPriority();
   for (const std::string& word : Realtime(folder)) command.push_back(word);
   const Outcome run = RunCommand(command);
-  ExpectSuccessOrALogThatIsNotWhole(run);
+  if (run.code != 0) {  // on a busy machine the recorder may lack messages without the priority
+    ASSERT_EQ(run.code, kFailed) << run.err;
+    ASSERT_THAT(run.err, HasSubstr(kNotWhole));
+  }
   EXPECT_THAT(run.err,
               HasSubstr("warning: without real-time priority: world, radar, lidar, fusion, "
                         "acc, driver, arbitrator, follower, recorder. On a busy machine "
@@ -107,10 +103,12 @@ TEST(PriorityInRealtimeTest, IsMissedByARoleThatAPersonHasStarted) {
   std::vector<std::string> command = WithoutPriority();
   command.insert(command.end(), {Program("fogline-driver"), "--lcm-url", url});
   Background driver(command);
+  // Without the priority the driver may be late. At this speed the recorder can ask for its
+  // messages for 3.2 s.
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
-                                  "--speed", "5", "--set", "/steps=60", "--lcm-url", url,
-                                  "--external", "driver", "--log", folder.File("run.lcm")});
-  ExpectSuccessOrALogThatIsNotWhole(run);
+                                  "--set", "/steps=60", "--lcm-url", url, "--external", "driver",
+                                  "--log", folder.File("run.lcm")});
+  EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("warning: without real-time priority: driver. On a busy"));
   EXPECT_EQ(driver.Wait(), 0);
   EXPECT_THAT(driver.Err(), HasSubstr("fogline-driver: the kernel grants no real-time priority"));
