@@ -177,6 +177,7 @@ void Membership::Join(const run_t& run) {
   } catch (const std::exception& error) {
     return own_.Fail(fmt::format("cannot take part: {}", error.what()));
   }
+  before_ready_();
   own_.SetState(status_t::READY);
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/clock.h"
 #include "services/runtime/node/fire_rule.h"
@@ -22,6 +24,8 @@ class Membership {
   Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
              std::unique_ptr<FireRule>& rule);
 
+  /// Sets what is called when the role has prepared for its run, just before it reports READY.
+  void BeforeReady(std::function<void()> call) { before_ready_ = std::move(call); }
   /// Does what is due: asks for the scenario, or leaves the run if the runner is gone.
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now);
@@ -57,6 +61,7 @@ class Membership {
   OwnStatus& own_;
   Work& work_;
   std::unique_ptr<FireRule>& rule_;
+  std::function<void()> before_ready_ = [] {};
   const bool chosen_;  // whether an option names the run: then the role looks for no other run
   bool fresh_;         // whether the runner has answered this process; also true without a key
   RateLimiter questions_{200, 20};  // limits the requests that ask runners for an answer

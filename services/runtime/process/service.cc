@@ -81,7 +81,6 @@ class Service {
         SeekAnother(now);
       } else {
         seeker_.reset();
-        PreferIfRealtime();
       }
       TakePart();
     }
@@ -105,7 +104,8 @@ class Service {
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
-    preferred_ = false;  // the new bus may start a further thread, which has no priority yet
+    // In real time, the first step may come as soon as the role is READY.
+    work_->node().membership().BeforeReady([this] { PreferIfRealtime(); });
   }
 
   /// Joins the network for the first time. A process with the option --run-id was started by a
@@ -266,7 +266,7 @@ class Service {
   }
 
   void PreferIfRealtime() {
-    if (!news().realtime || std::exchange(preferred_, true)) return;
+    if (!news().realtime) return;
     const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
     if (RunBeforeOthers(priority) || IsOfARunner()) return;  // a runner prints this for its roles
     if (std::exchange(said_not_preferred_, true)) return;
@@ -287,7 +287,6 @@ class Service {
   bool starts_over_ = false;
   std::optional<std::int64_t> full_;  // the last run that NameTheFullRun() has named
   bool warned_ = false;
-  bool preferred_ = false;  // whether the process has asked for priority since it joined this bus
   bool said_not_preferred_ = false;
 };
 

@@ -46,6 +46,18 @@ TEST_F(MembershipTest, KnowsThatARunIsInRealtimeAndHowFastItIs) {
   EXPECT_EQ(parts_.run.pace, 0.5);
 }
 
+TEST_F(MembershipTest, CallsBeforeItReportsThatItIsReady) {
+  int calls = 0;
+  role_.node().membership().BeforeReady([&] {
+    ++calls;
+    EXPECT_EQ(role_.joins, 1);
+    EXPECT_EQ(own_.message().state, status_t::WAITING);
+  });
+  Join();
+  EXPECT_EQ(calls, 1);
+  EXPECT_TRUE(own_.Running());
+}
+
 TEST_F(MembershipTest, SaysWhyItCannotTakePart) {
   role_.join_error = "no such car";
   Join();
