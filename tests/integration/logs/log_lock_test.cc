@@ -86,7 +86,7 @@ TEST_F(LogLockTest, ASecondRunIntoOneLogIsRefusedByNameAndTheFirstKeepsItsResult
 
 TEST_F(LogLockTest, ALogStaysLockedWhileItsRunStandsStillAndWhileItsRecorderIsStartedAgain) {
   // GIVEN a run that is under way
-  Background first(With(run_, {"--pace", "5"}));
+  Background first(With(run_, {"--pace", "5", "--stall-timeout", "30"}));
   ASSERT_TRUE(first.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(1, log_));
   // WHEN the run is stopped and its recorder is killed, THEN other runs still may not write the log

@@ -99,7 +99,8 @@ TEST_F(WallClockTest, SurvivesTheDeathOfTheRecorderAndOfARoleThatAsksItForOldSte
   const std::string digest = Digest({});
   std::filesystem::remove(log_);  // so that the next run is the one whose log grows
   Background run({Program("fogline"), "run", "scenario/paper.json", "--force", "--log", log_,
-                  "--json", "--set", "/steps=200", "--pace", "20", "--wall-clock"});
+                  "--json", "--set", "/steps=200", "--pace", "20", "--wall-clock",
+                  "--stall-timeout", "30"});
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(100'000, log_));
   kill(PidOf(run.Err(), "recorder"), SIGKILL);

@@ -45,7 +45,7 @@ class LiveTest : public testing::Test {
     Background live(listener);
     ASSERT_TRUE(live.WaitForOut("listening")) << live.Err();
     // The run is slow, so a busy machine loses no message that the listener has not read yet.
-    std::vector<std::string> more{"--external", "driver", "--pace", "2", "--set", "/steps=40"};
+    std::vector<std::string> more{"--external", "driver", "--pace", "1", "--set", "/steps=40"};
     more.insert(more.end(), of_run.begin(), of_run.end());
     Background run(meeting_.Run(more));
     ASSERT_TRUE(live.WaitForOut("joined")) << live.Err() << run.Err();

@@ -108,6 +108,7 @@ class BurstListener {
 
   void ListenUntil(TimePoint end) {
     for (TimePoint now = Clock::now(); now < end; now = Clock::now()) bus_->Wait(end - now);
+    bus_->Drain();
   }
   bool WaitForStep(std::int64_t step, const Background& run) {
     const TimePoint end = Clock::now() + kPatience;

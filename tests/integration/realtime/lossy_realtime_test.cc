@@ -48,8 +48,7 @@ class Listener {
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
     // The process may have received STOP a moment before this listener.
     const TimePoint grace = Clock::now() + milliseconds(200);
-    for (TimePoint now = Clock::now(); !stopped_ && now < grace; now = Clock::now()) {
-      bus_->Wait(grace - now);
+    while (!stopped_ && (bus_->Wait(milliseconds(5)) || Clock::now() < grace)) {
     }
     return stopped_;
   }

@@ -44,8 +44,8 @@ class RealtimeRun {
   void WaitForStep(std::int64_t step) {
     const TimePoint end = Clock::now() + kPatience;
     while (step_ < step) {
-      bus_.Wait(milliseconds(20));
-      if (Clock::now() > end || !IsAlive(run_.pid())) {
+      const bool heard = bus_.Wait(milliseconds(20));
+      if (Clock::now() > end || (!heard && !IsAlive(run_.pid()))) {
         throw std::runtime_error("waited in vain for a step\n" + run_.Err());
       }
     }

@@ -159,8 +159,9 @@ TEST(ConsoleTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
   // GIVEN a run with a stderr that accepts nothing
-  Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
-                                            "--set", "/steps=60", "--pace", "1", "--log", log}));
+  Background run(Shell("exec 2>/dev/full",
+                       {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=60",
+                        "--pace", "1", "--stall-timeout", "30", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   // WHEN a role is killed THEN the run starts it again, although the run cannot report the restart
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
@@ -179,7 +180,7 @@ TEST(ConsoleTest, ARunGoesOnWhenItsTerminalIsGone) {
   // GIVEN a run that reports its progress on a terminal
   Background run(Shell("exec 2>" + std::string(ptsname(terminal)),
                        {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=60",
-                        "--pace", "1", "--log", log}));
+                        "--pace", "1", "--stall-timeout", "30", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
