@@ -25,7 +25,7 @@ class Bridge {
  public:
   Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
     for (const char* channel : {"RUN", "TRUTH", "RESEND"}) Carry(run_, role_, channel);
-    for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
+    for (const char* channel : {"LIDAR", "STATUS", "RESEND"}) Carry(role_, run_, channel);
   }
 
   /// Tells the bridge to make the LiDAR's range of this step larger.
@@ -41,7 +41,15 @@ class Bridge {
 
  private:
   void Carry(runtime::Bus& from, runtime::Bus& to, const std::string& channel) {
-    from.Subscribe(channel, [this, &to, channel](runtime::Bytes bytes) {
+    const bool of_lidar = &from == &role_;
+    from.Subscribe(channel, [this, &to, channel, of_lidar](runtime::Bytes bytes) {
+      // Requests cross the bridge in both directions. Each bus also receives what the bridge itself
+      // publishes there, and this must not cross again.
+      resend_t resend{};
+      if (channel == ChannelOf<resend_t>().name && runtime::Decode(bytes, resend) &&
+          (resend.requester == NameOf(Role::kLidar)) != of_lidar) {
+        return;
+      }
       Payload payload(bytes.begin(), bytes.end());
       lidar_t lidar{};
       if (runtime::Decode(payload, lidar) && lidar.header.step == altered_) {
