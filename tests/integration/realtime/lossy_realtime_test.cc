@@ -48,7 +48,8 @@ class Listener {
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
     // The process may have received STOP a moment before this listener.
     const TimePoint grace = Clock::now() + milliseconds(200);
-    while (!stopped_ && (bus_->Wait(milliseconds(5)) || Clock::now() < grace)) {
+    while (!stopped_ && Clock::now() < end) {
+      if (!bus_->Wait(milliseconds(5)) && Clock::now() > grace) break;
     }
     return stopped_;
   }

@@ -84,7 +84,7 @@ inline FaultPlan PlanOf(const Fault& fault) {
   } else if (fault.role != "world") {
     // The automation must be back at the end. A busy machine starts a process late.
     plan.settings = {"/fog/start_s=60"};
-    plan.steps = 400;
+    plan.steps = 240;
   }
   return plan;
 }
