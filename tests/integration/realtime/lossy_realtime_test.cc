@@ -98,7 +98,7 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
 };
 
 TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
-  constexpr int kSteps = 150;
+  constexpr int kSteps = 300;
   const Outcome outcome =
       RunCommand(machine_->On(Run({"--realtime", "--speed", "4", "--faults", "loss=0.3", "--set",
                                    "/steps=" + std::to_string(kSteps), "--lcm-url", kUrl})));
@@ -109,12 +109,14 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder receive and send until the end. The log may lack only messages near
-  // the end.
+  // Every role and the recorder receive and send until the end. An ACC_COMMAND comes only if six
+  // messages of its step arrive, one after another. So the log has about one ACC_COMMAND in eight
+  // steps: it lacks those of the last 50 steps in one of a thousand runs, and those of the last 150
+  // steps in one of a hundred million.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
-    EXPECT_GE(newest[i], kSteps - 50) << kChannels[i].name;
+    EXPECT_GE(newest[i], kSteps - 150) << kChannels[i].name;
   }
 }
 
