@@ -109,14 +109,15 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder receive and send until the end. An ACC_COMMAND comes only if six
-  // messages of its step arrive, one after another. So the log has about one ACC_COMMAND in eight
-  // steps: it lacks those of the last 50 steps in one of a thousand runs, and those of the last 150
-  // steps in one of a hundred million.
+  // Every role and the recorder receive and send until the end. The log may lack only messages near
+  // the end. An ACC_COMMAND comes only if six messages of its step arrive, one after another. So
+  // the log has about one in eight: none of the last 50 steps in one of a thousand runs, and none
+  // of the last 150 steps in one of a hundred million.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
-    EXPECT_GE(newest[i], kSteps - 150) << kChannels[i].name;
+    const int last = kChannels[i].name == "ACC_COMMAND" ? 150 : 50;
+    EXPECT_GE(newest[i], kSteps - last) << kChannels[i].name;
   }
 }
 
