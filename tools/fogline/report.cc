@@ -245,7 +245,6 @@ report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
   runner::CheckPossible(scenario, arguments.curves);
   std::vector<double> thresholds = sweep::ParseThresholds(arguments.thresholds);
   std::sort(thresholds.begin(), thresholds.end());
-  thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
   const sweep::SeedRange seeds = cli::ReadSeeds(arguments.seeds);
   report::ReportCurves curves{.scenario_title = scenario.title,
                               .first_seed = seeds.first,

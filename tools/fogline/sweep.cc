@@ -35,7 +35,7 @@ struct SweepArguments {
         "--out", out,
         "CSV file; a pipe or /dev/stdout gets only the rows (default: SCENARIO-sweep.csv in this "
         "folder; if that is of another sweep, SCENARIO-sweep-2.csv and so on)");
-    verb.add_option("--shard", shard, "Compute only part I of N equal parts, as I/N");
+    verb.add_option("--shard", shard, "Compute only part I of N, as I/N (see below)");
     CLI::Option* put_together =
         verb.add_option("--merge", merge, "Join the files of all shards into --out");
     for (const char* other : {"SCENARIO", "--set", "--grid", "--seeds", "--shard"}) {
@@ -47,7 +47,9 @@ struct SweepArguments {
     verb.footer(
         "The order of the rows does not depend on --jobs. Call a stopped or killed sweep again to\n"
         "continue at the end of its file. FILE.json describes the sweep in FILE.\n"
-        "SI compares each row with the same run without traded control.\n\n"
+        "SI compares each row with the same run without traded control.\n"
+        "Rows that differ only in fields of /arbitrator/ are computed together, in one shard. So\n"
+        "some shards may be empty.\n\n"
         "Examples:\n"
         "  fogline sweep scenario/paper.json --grid /arbitrator/threshold=0.2,0.5,0.8 --seeds "
         "1:1000\n"
@@ -87,6 +89,10 @@ sweep::SweepPlan MakePlan(const SweepArguments& arguments) {
                           PathText(arguments.scenario));
 }
 
+std::string RowsText(std::int64_t rows) {
+  return rows == 1 ? "1 row" : fmt::format("{} rows", rows);
+}
+
 /// Prints a summary on stdout, or on stderr if the rows go to stdout.
 void PrintSummary(const std::filesystem::path& out, const std::string& text) {
   if (IsStdout(out)) return Complain(text);
@@ -124,7 +130,7 @@ int Merge(const SweepArguments& arguments) {
         {"rows", merged.rows}, {"out", arguments.out.string()}, {"unchecked", unchecked}};
     cli::PrintJson(json);
   } else {
-    PrintSummary(arguments.out, fmt::format("{} rows", merged.rows));
+    PrintSummary(arguments.out, RowsText(merged.rows));
   }
   return kDone;
 }
@@ -142,6 +148,12 @@ int RunSweepVerb(const SweepArguments& arguments) {
   sweep::SweepFile file(out, plan, shard, arguments.force);
   const std::int64_t begin = file.next_unit();
   const std::int64_t end = plan.ShardEnd(shard);
+  if (end == plan.ShardBegin(shard)) {
+    Complain(fmt::format(
+        "fogline sweep: warning: --shard {}: no rows, because the sweep can be divided into at "
+        "most {}",
+        arguments.shard, plan.units() == 1 ? "1 part" : fmt::format("{} parts", plan.units())));
+  }
   if (begin > plan.ShardBegin(shard) && !arguments.json) {
     Notice(fmt::format("{}: {} of {} rows are there", PathText(out),
                        (begin - plan.ShardBegin(shard)) * plan.rows_per_unit(),
@@ -158,7 +170,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
                   });
   const std::int64_t rows = (file.next_unit() - begin) * plan.rows_per_unit();
   if (file.next_unit() != end) {
-    throw Interrupted(fmt::format("interrupted after {} rows; call it again to go on", rows));
+    throw Interrupted(fmt::format("interrupted after {}; call it again to go on", RowsText(rows)));
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   // A unit consists of the rows that share a paired run without traded control. The rate does not
@@ -170,7 +182,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
         {"runs", rows}, {"wall_s", wall_s}, {"runs_per_s_per_core", rate}, {"out", out.string()}};
     cli::PrintJson(json);
   } else {
-    PrintSummary(out, fmt::format("{} rows in {:.2f} s, {:.0f} rows per second and core", rows,
+    PrintSummary(out, fmt::format("{} in {:.2f} s, {:.0f} rows per second and core", RowsText(rows),
                                   wall_s, rate));
   }
   return kDone;

@@ -98,16 +98,7 @@ void AskForRoles(const runner::RunOptions& options, std::int64_t runs) {
 
 std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario& scenario) {
   std::vector<double> thresholds;
-  if (!arguments.thresholds.empty()) {
-    thresholds = sweep::ParseThresholds(arguments.thresholds);
-    std::vector<double> sorted = thresholds;
-    std::ranges::sort(sorted);
-    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end()) {
-      throw InputError(
-          fmt::format("error: --thresholds {}: {} comes twice", arguments.thresholds, *twice));
-    }
-    return thresholds;
-  }
+  if (!arguments.thresholds.empty()) return sweep::ParseThresholds(arguments.thresholds);
   for (const PublishedRow& row : scenario.published) thresholds.push_back(row.threshold);
   if (thresholds.empty()) thresholds = {0.2, 0.5, 0.8};
   return thresholds;

@@ -1,7 +1,9 @@
 #include "tools/sweep/plan.h"
 
 #include <charconv>
+#include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/core.h>
@@ -59,15 +61,24 @@ std::string SeedsHint(const std::string& text) {
   return "";
 }
 
+/// The text without spaces at its ends.
+std::string_view Trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
 /// The values of "first:last:count"; empty if the text has another form. Values are printed with
 /// fifteen significant digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
 std::vector<std::string> Spaced(std::string_view text) {
-  const std::vector<std::string_view> parts = Split(text, ':');
+  std::vector<std::string_view> parts = Split(text, ':');
+  for (std::string_view& part : parts) part = Trim(part);
   double first = 0;
   double last = 0;
   std::int64_t count = 0;
   if (parts.size() != 3 || !Parse(parts[0], first) || !Parse(parts[1], last) ||
-      !Parse(parts[2], count) || count < 2 || count > kMaxPoints) {
+      !std::isfinite(first) || !std::isfinite(last) || !Parse(parts[2], count) || count < 2 ||
+      count > kMaxPoints) {
     return {};
   }
   std::vector<std::string> values;
@@ -77,6 +88,21 @@ std::vector<std::string> Spaced(std::string_view text) {
                                     : fmt::format("{:.15g}", first + (last - first) * share));
   }
   return values;
+}
+
+/// Refuses values that are equal, also if they are written in two ways, such as 0.5 and 0.50, or 0
+/// and -0.
+/// @throws InputError
+void RefuseEqual(const std::string& argument, const std::vector<std::string>& values) {
+  std::set<std::string> known;
+  for (const std::string& value : values) {
+    double number = 0;
+    const std::string plain =
+        Parse(std::string_view(value), number) ? fmt::format("{}", number + 0.0) : value;
+    if (!known.insert(plain).second) {
+      throw InputError(fmt::format("error: {}: {} comes twice", argument, plain));
+    }
+  }
 }
 
 /// Checks a value of a field by the rules of scenario files. `argument` names the source of the
@@ -101,16 +127,20 @@ std::vector<std::string> ParseValues(const std::string& argument, std::string_vi
     std::vector<std::string> spaced = Spaced(values);
     if (spaced.empty()) {
       throw InputError(
-          fmt::format("error: {}: not first:last:count with two numbers and a count from 2 to {}",
+          fmt::format("error: {}: not first:last:count with two finite numbers and a count from 2 "
+                      "to {}",
                       argument, kMaxPoints));
     }
+    RefuseEqual(argument, spaced);
     return spaced;
   }
   std::vector<std::string> list;
-  for (const std::string_view value : Split(values, ',')) {
+  for (const std::string_view part : Split(values, ',')) {
+    const std::string_view value = Trim(part);
     if (value.empty()) throw InputError(fmt::format("error: {}: an empty value", argument));
     list.emplace_back(value);
   }
+  RefuseEqual(argument, list);
   return list;
 }
 

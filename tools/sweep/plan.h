@@ -18,6 +18,7 @@ struct Axis {
 };
 
 /// Reads values as a person writes them: "a,b,c", or "first:last:count" for evenly spaced numbers.
+/// No value may come twice. Spaces around a value do not count.
 /// @param argument the beginning of an error message, such as "--thresholds 1:2"
 /// @throws InputError
 std::vector<std::string> ParseValues(const std::string& argument, std::string_view values);
@@ -42,7 +43,8 @@ struct SeedRange {
 /// @throws InputError
 SeedRange ParseSeeds(const std::string& text);
 
-/// Part `index` of a sweep that is divided into `count` equal parts; `index` counts from 1.
+/// Part `index` of a sweep that is divided into `count` parts; `index` counts from 1. The parts
+/// have equal numbers of units (SweepPlan), or numbers that differ by 1.
 struct Shard {
   std::int64_t index = 1;
   std::int64_t count = 1;

@@ -1,4 +1,6 @@
 // `fogline sweep --shard` and `--merge`: several machines make one file.
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/verbs/sweep_fixture.h"
@@ -6,6 +8,8 @@
 namespace fogline::test {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using SweepMergeTest = SweepFixture;
 
 TEST_F(SweepMergeTest, MergesSevenShardsIntoTheFileOfTheWholeSweep) {
@@ -38,6 +42,12 @@ TEST_F(SweepMergeTest, MergesShardsOfWhichSomeHaveNothingToDo) {
   const std::string whole = Made("whole.csv", sweep);
   EXPECT_EQ(Merge(Shards(5, sweep), "merged.csv").code, 0);
   EXPECT_EQ(Content(File("merged.csv")), whole);
+  const Outcome empty = Sweep("empty.csv", sweep + Words{"--shard", "1/5"});
+  EXPECT_EQ(empty.code, 0);
+  EXPECT_THAT(empty.err,
+              HasSubstr("fogline sweep: warning: --shard 1/5: no rows, because the sweep "
+                        "can be divided into at most 3 parts\n"));
+  EXPECT_THAT(Sweep("one.csv", kShort + Words{"--seeds", "1"}).out, StartsWith("1 row in "));
 }
 
 TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {

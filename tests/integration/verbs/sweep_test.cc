@@ -245,8 +245,9 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
   EXPECT_EQ(error({"--grid", "/arbitrator/threshold=0.2,2"}),
             "fogline sweep: error: --grid /arbitrator/threshold=2: 2 is outside [0, 1]\n");
   EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0.2,,0.3"}), HasSubstr("an empty value\n"));
-  EXPECT_THAT(error({"--grid", "/arbitrator/threshold=0:1:1"}),
-              HasSubstr("not first:last:count with two numbers and a count from 2 to 1000000\n"));
+  EXPECT_THAT(
+      error({"--grid", "/arbitrator/threshold=0:1:1"}),
+      HasSubstr("not first:last:count with two finite numbers and a count from 2 to 1000000\n"));
   EXPECT_EQ(error({"--grid", "/fog/bias_m=1", "--grid", "/fog/bias_m=2"}),
             "fogline sweep: error: --grid /fog/bias_m: given twice\n");
   EXPECT_EQ(error({"--grid", "/seed=1,2"}),

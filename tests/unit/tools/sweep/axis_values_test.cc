@@ -36,8 +36,26 @@ TEST(AxisValuesTest, AreRefusedWithTheWholeArgument) {
   EXPECT_THAT(ErrorOf([] { sweep::ParseAxis("/fog/bias_m=0:1"); }),
               StartsWith("error: --grid /fog/bias_m=0:1: not first:last:count"));
   EXPECT_THAT(ErrorOf([] { sweep::ParseAxis("/fog/bias_m=1,,2"); }), HasSubstr("an empty value"));
+  EXPECT_THAT(
+      ErrorOf([] { sweep::ParseAxis("/fog/bias_m=inf:1:2"); }),
+      StartsWith("error: --grid /fog/bias_m=inf:1:2: not first:last:count with two finite"));
   EXPECT_THAT(ErrorOf([] { sweep::ParseThresholds("0:1:1"); }),
               StartsWith("error: --thresholds 0:1:1: not first:last:count"));
+}
+
+TEST(AxisValuesTest, AreAllDifferent) {
+  for (const char* values : {"0.5,0.50", "1,0.5,5e-1", "0.5:0.5:3"}) {
+    EXPECT_EQ(ErrorOf([&] { sweep::ParseAxis("/fog/bias_m=" + std::string(values)); }),
+              "error: --grid /fog/bias_m=" + std::string(values) + ": 0.5 comes twice");
+  }
+  EXPECT_THAT(ErrorOf([] { sweep::ParseAxis("/fog/model=bias,beam,bias"); }),
+              HasSubstr(": bias comes twice"));
+  EXPECT_THAT(ErrorOf([] { sweep::ParseThresholds("0,-0"); }), HasSubstr(": 0 comes twice"));
+}
+
+TEST(AxisValuesTest, IgnoreSpacesAroundAValue) {
+  EXPECT_THAT(sweep::ParseAxis("/fog/bias_m=0.2, 0.3 ").values, ElementsAre("0.2", "0.3"));
+  EXPECT_THAT(sweep::ParseThresholds(" 0.2 : 0.8 : 2 "), ElementsAre(0.2, 0.8));
 }
 
 TEST(AxisValuesTest, OfThresholdsAreNumbersFromZeroToOne) {
