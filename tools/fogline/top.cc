@@ -78,12 +78,18 @@ struct TopArguments {
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
 
+watch::Following FollowingOf(const TopArguments& arguments) {
+  if (!arguments.network.Follows()) return watch::Following::kNothing;
+  // The output of --once has the traffic of one run, whose network it names.
+  return arguments.once ? watch::Following::kFirstRun : watch::Following::kNewestRun;
+}
+
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
       : arguments_(arguments),
         statistics_(Clock::now()),
-        network_(arguments.network.Url(), arguments.network.Follows(),
+        network_(arguments.network.Url(), FollowingOf(arguments),
                  [this](std::string_view channel, runtime::Bytes bytes) {
                    statistics_.Add(channel, bytes, Clock::now());
                  }) {

@@ -19,14 +19,16 @@ constexpr std::size_t kMaxUnreachable = 64;
 
 }  // namespace
 
-FollowedNetwork::FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher)
+FollowedNetwork::FollowedNetwork(std::string url, Following following,
+                                 runtime::Bus::Watcher watcher)
     : url_(std::move(url)),
+      following_(following),
       watcher_([this, watch = std::move(watcher)](std::string_view channel, runtime::Bytes bytes) {
         if (channel == runtime::kWaitingChannel) waiting_.Hear(bytes, Clock::now());
         if (!IsHousekeeping(channel)) watch(channel, bytes);
       }) {
   Open();
-  if (follows) listener_.emplace(network_->bus.url());
+  if (following_ != Following::kNothing) listener_.emplace(network_->bus.url());
 }
 
 FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher)
@@ -77,34 +79,47 @@ void FollowedNetwork::Follow(TimePoint now) {
   follow_at_ = now + kFollowEvery;
   listener_->Look();
   runs_ = listener_->Runs();
+  if (following_ == Following::kFirstRun && run_) {
+    const auto own = std::ranges::find(runs_, run_->run_id, &runtime::Announcement::run_id);
+    if (own != runs_.end()) {
+      run_ = *own;
+      runs_.erase(own);
+    }
+    runs_.insert(runs_.begin(), *run_);
+    return;
+  }
   const auto newest = std::ranges::find_if(runs_, [this](const runtime::Announcement& run) {
     return std::ranges::find(unreachable_, run.run_id) == unreachable_.end();
   });
-  if (newest == runs_.end()) return CloseFollowed();
+  if (newest == runs_.end()) {
+    run_.reset();
+    return CloseFollowed();
+  }
   std::rotate(runs_.begin(), newest, newest + 1);
-  const runtime::Announcement& run = runs_.front();
-  if (followed_ && runtime::SameNetwork(followed_->bus.url(), run.url)) return;
+  run_ = runs_.front();
+  if (followed_ && runtime::SameNetwork(followed_->bus.url(), run_->url)) return;
   CloseFollowed();
-  if (runtime::SameNetwork(network_->bus.url(), run.url)) return;
-  OpenFollowed(run);
+  if (!runtime::SameNetwork(network_->bus.url(), run_->url)) OpenFollowed();
 }
 
-void FollowedNetwork::OpenFollowed(const runtime::Announcement& run) {
+void FollowedNetwork::OpenFollowed() {
   try {
-    followed_.emplace(run.url, watcher_);
+    followed_.emplace(run_->url, watcher_);
     followed_->tap = Tap(followed_->bus.url());
     ++generation_;
   } catch (const std::exception&) {  // the address came from the network and may be invalid
-    Leave(run.run_id);
+    Leave();
   }
 }
 
 void FollowedNetwork::DrainFollowed(TimePoint now) {
-  if (!followed_) return;
+  if (!followed_ || followed_->lost) return;
   try {
     if (followed_->Drain(now)) ++generation_;
   } catch (const std::exception&) {  // the relay of this network has ended
-    Leave(runs_.front().run_id);
+    if (following_ == Following::kNewestRun) return Leave();
+    followed_->lost = true;
+    ++generation_;
   }
 }
 
@@ -114,10 +129,11 @@ void FollowedNetwork::CloseFollowed() {
   ++generation_;
 }
 
-void FollowedNetwork::Leave(std::int64_t run_id) {
+void FollowedNetwork::Leave() {
   CloseFollowed();
   if (unreachable_.size() == kMaxUnreachable) unreachable_.clear();
-  unreachable_.push_back(run_id);
+  unreachable_.push_back(run_->run_id);
+  run_.reset();
 }
 
 }  // namespace fogline::watch

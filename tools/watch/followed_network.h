@@ -19,16 +19,19 @@
 
 namespace fogline::watch {
 
+/// Which announced run a program follows. `kFirstRun` is the run that was the newest when a run was
+/// followed first. The program stays with this run, also after the end of the run.
+enum class Following { kNothing, kNewestRun, kFirstRun };
+
 class FollowedNetwork {
  public:
   /// Longest time between two calls of Handle(). After very many messages, poll() may not report
   /// the messages that still wait.
   static constexpr Duration kLookEvery = milliseconds(50);
 
-  /// @param follows whether to follow announced runs
   /// @param watcher gets every message, except LCM's own and beacons
   /// @throws InputError, std::runtime_error like Bus()
-  FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher);
+  FollowedNetwork(std::string url, Following following, runtime::Bus::Watcher watcher);
 
   /// Handles messages that have come, and looks for announced runs.
   /// @throws std::runtime_error if the network of the URL is lost
@@ -42,7 +45,7 @@ class FollowedNetwork {
   /// The descriptors to wait for; -1 for a network that is not open. They are valid until the next
   /// Handle() or ForgetNames() that changes generation().
   std::array<int, 2> descriptors() const {
-    return {network_->bus.fd(), followed_ ? followed_->bus.fd() : -1};
+    return {network_->bus.fd(), followed_ && !followed_->lost ? followed_->bus.fd() : -1};
   }
   /// A number that changes when a network is opened or closed, or when its relay is lost or comes
   /// back. A descriptor may then have the same number, but be another file.
@@ -54,7 +57,7 @@ class FollowedNetwork {
   std::vector<runtime::WaitingRole> waiting(TimePoint now) const { return waiting_.Current(now); }
   bool follows() const { return listener_.has_value(); }
   bool followed() const { return followed_.has_value(); }
-  /// The announced runs; the followed run comes first.
+  /// The announced runs. The followed run comes first; `kFirstRun` is here also after its end.
   const std::vector<runtime::Announcement>& runs() const { return runs_; }
 
   /// The senders, and how many messages of each sender were lost.
@@ -73,18 +76,20 @@ class FollowedNetwork {
     runtime::Bus bus;
     std::unique_ptr<PacketTap> tap;  // nullptr if packets have no numbers
     std::int64_t replaced = 0;       // bus.replaced() at the last Drain()
+    bool lost = false;               // whether the relay of this network has ended
   };
 
   void Open();
-  void OpenFollowed(const runtime::Announcement& run);
+  void OpenFollowed();
   /// @return nullptr if the packets have no numbers, or cannot be counted
   std::unique_ptr<PacketTap> Tap(const std::string& url);
   void Follow(TimePoint now);
   void DrainFollowed(TimePoint now);
   void CloseFollowed();
-  void Leave(std::int64_t run_id);
+  void Leave();
 
   std::string url_;
+  Following following_;
   runtime::Bus::Watcher watcher_;
   runtime::WaitingRoles waiting_;
   Senders senders_;
@@ -92,8 +97,9 @@ class FollowedNetwork {
   std::int64_t names_ = 0;                           // unknown names when network_ was opened
   std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
   std::vector<runtime::Announcement> runs_;
-  std::optional<Network> followed_;        // the network of the followed run
-  std::vector<std::int64_t> unreachable_;  // ids of runs whose networks could not be opened
+  std::optional<runtime::Announcement> run_;  // the followed run
+  std::optional<Network> followed_;           // its network, if this is another one than network_
+  std::vector<std::int64_t> unreachable_;     // ids of runs whose networks could not be opened
   TimePoint follow_at_{};
   std::string tap_trouble_;
   std::int64_t generation_ = 0;

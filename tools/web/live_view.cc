@@ -51,7 +51,8 @@ LiveView::LiveView(asio::io_context& context, LiveOptions options)
       foxglove_channels_(FoglineTypes()),
       tracker_(options.run),
       waits_for_person_(options.waits_for_person),
-      network_(std::move(options.url), options.follows,
+      network_(std::move(options.url),
+               options.follows ? watch::Following::kNewestRun : watch::Following::kNothing,
                [this](std::string_view channel, runtime::Bytes bytes) { Hear(channel, bytes); }),
       look_(context),
       health_(context) {
