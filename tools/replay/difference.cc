@@ -61,8 +61,13 @@ Difference FirstField(std::int64_t step, runtime::Bytes a, runtime::Bytes b) {
   }
   M message_a{};
   M message_b{};
-  if (!runtime::Decode(a, message_a) || !runtime::Decode(b, message_b)) {
-    return difference.field = "(does not decode)", difference;
+  const bool reads_a = runtime::Decode(a, message_a);
+  const bool reads_b = runtime::Decode(b, message_b);
+  if (!reads_a || !reads_b) {
+    difference.field = "(does not decode)";
+    difference.a = reads_a ? "decodes" : "does not";
+    difference.b = reads_b ? "decodes" : "does not";
+    return difference;
   }
   const std::vector<Field> fields_a = FieldsOf(message_a);
   const std::vector<Field> fields_b = FieldsOf(message_b);

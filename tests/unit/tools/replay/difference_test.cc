@@ -94,14 +94,14 @@ TEST(DifferenceTest, MayBeAMessageThatCannotBeRead) {
   std::vector<std::uint8_t> torn = Bytes(Truth());
   torn.pop_back();
   EXPECT_EQ(FirstDifference(IndexOf<truth_t>(), kStep, Bytes(Truth()), torn),
-            OfTruth("(does not decode)", "", ""));
+            OfTruth("(does not decode)", "decodes", "does not"));
 }
 
 TEST(DifferenceTest, MayBeAMessageOfAnotherType) {
   std::vector<std::uint8_t> other = Bytes(Truth());
   other[0] ^= 1;  // the fingerprint of the type
-  EXPECT_EQ(FirstDifference(IndexOf<truth_t>(), kStep, Bytes(Truth()), other),
-            OfTruth("(does not decode)", "", ""));
+  EXPECT_EQ(FirstDifference(IndexOf<truth_t>(), kStep, other, Bytes(Truth())),
+            OfTruth("(does not decode)", "does not", "decodes"));
 }
 
 TEST(DifferenceTest, OfAStepIsOnTheFirstChannelInTheOrderOfTheGraph) {
