@@ -326,6 +326,7 @@ void RefuseToReplace(const fs::path& file, std::string_view option, bool force,
                      std::string_view kind,
                      const std::function<bool(const fs::path&)>& is_of_kind) {
   std::error_code ignored;
+  if (fs::is_directory(file, ignored)) ThrowCannotWrite(file, option, "it is a folder");
   if (!IsReplaceable(file) || !fs::exists(fs::status(file, ignored))) return;
   const auto refuse = [&](const std::string& why) {
     throw InputError(fmt::format("{}: error: {}: the file {}", PathText(file), option, why));

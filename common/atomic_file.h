@@ -138,7 +138,7 @@ class OutputFolder {
 
 /// Refuses to replace an existing file unless `force` is true. Even with `force`, the function
 /// refuses a file of another kind, because the name may be mistyped. With `force`, an empty file is
-/// accepted. A pipe and a device are always accepted.
+/// accepted. A folder is never accepted. A pipe and a device are always accepted.
 /// @param kind such as "sweep"
 /// @throws InputError "FILE: error: --out: the file is no sweep and is not replaced, even with
 /// --force"

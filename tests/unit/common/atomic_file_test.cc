@@ -201,6 +201,10 @@ TEST_F(AtomicFileTest, ReplacesByForceOnlyWhatIsOfItsKind) {
   EXPECT_EQ(error(true),
             file_ + ": error: --out: the file is no page and is not replaced, even with --force");
   EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/dev/null", "--out", false, "page", is_page); }), "");
+  for (const bool force : {false, true}) {
+    EXPECT_EQ(ErrorOf([&] { RefuseToReplace("/tmp", "--out", force, "page", is_page); }),
+              "/tmp: error: --out: cannot write: it is a folder");
+  }
 }
 
 TEST_F(AtomicFileTest, IsTriedBeforehandWithoutATrace) {
