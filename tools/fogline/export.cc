@@ -1,6 +1,9 @@
 // fogline export: writes a log as CSV, MAT-file or MCAP file, for programs that do not know LCM.
+#include <algorithm>
+#include <cctype>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,11 +37,22 @@ struct ExportArguments {
   bool json = false;
 };
 
-bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
+/// Whether the file has this extension. Capital letters count as small ones.
+/// @param extension in small letters, such as ".mat"
+bool HasExtension(const std::filesystem::path& out, std::string_view extension) {
+  return std::ranges::equal(out.extension().native(), extension, {},
+                            [](unsigned char letter) { return std::tolower(letter); });
+}
+
+bool IsMat(const std::filesystem::path& out) { return HasExtension(out, ".mat"); }
 
 /// Checks that the files may be written. Without --force none of these files may exist. With
 /// --force an existing file must be an export. @throws InputError
 void CheckFiles(const ExportArguments& arguments) {
+  if (HasExtension(arguments.out, ".mcap")) {
+    throw InputError(fmt::format("{}: error: --out: an MCAP file is written with --mcap",
+                                 PathText(arguments.out)));
+  }
   const bool is_mat = IsMat(arguments.out);
   std::vector<std::filesystem::path> files{arguments.out};
   if (!is_mat) {

@@ -133,7 +133,7 @@ TEST_F(ExportTest, WritesEveryNumberOfEveryChannelAsCsvToTheLastBit) {
 
 TEST_F(ExportTest, WritesEqualMatFilesOfLevel5ForEqualLogs) {
   ASSERT_EQ(Export({"--out", mat_}).code, 0);
-  const std::string again = folder_.File("again.mat");
+  const std::string again = folder_.File("again.MAT");
   ASSERT_EQ(Export({"--out", again}).code, 0);
   const std::string content = Content(mat_);
   EXPECT_EQ(content, Content(again));
@@ -194,6 +194,7 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   std::ofstream(out_ + "/scenario.json") << "{\"mine\": 1}";
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 2);
   EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: it is a file, not a folder\n");
+  EXPECT_EQ(error("run.MCAP"), "run.MCAP: error: --out: an MCAP file is written with --mcap\n");
   EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
 }
 
