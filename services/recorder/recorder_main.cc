@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/file_lock.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "services/runtime/process/service.h"
 
 namespace {
@@ -22,7 +22,7 @@ constexpr const char* kHelpFooter =
 
 int main(int argc, char** argv) {
   using fogline::FileLock;
-  using fogline::log::LogOfRun;
+  using fogline::log::LogGuard;
   using fogline::recorder::Recorder;
   std::string file;
   bool resume = false;
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   bool wall_clock = false;
   // One of these two objects locks the log while the recorder writes it.
   std::optional<FileLock> lock;
-  std::unique_ptr<LogOfRun> log;
+  std::unique_ptr<LogGuard> log;
   return fogline::runtime::RunProcess(
       argc, argv, fogline::Role::kRecorder,
       [&](fogline::runtime::Bus& bus, std::optional<std::int64_t> run_id) {
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
           lock.emplace(file, FileLock::Kind::kShared, "--log", "run");
         } else {
           log.reset();  // releases the lock that an earlier call took
-          log = std::make_unique<LogOfRun>(file);
+          log = std::make_unique<LogGuard>(file);
         }
         return std::make_unique<Recorder>(
             bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace,

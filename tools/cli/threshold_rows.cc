@@ -15,7 +15,7 @@
 #include "common/process/progress.h"
 #include "common/text.h"
 #include "services/log/event_log.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "tools/cli/action.h"
 #include "tools/cli/pairing.h"
 #include "tools/runner/side_by_side.h"
@@ -93,7 +93,7 @@ void RefuseForeignFiles(const TableRuns& runs, std::span<const double> threshold
 runner::RunResult RunOne(const TableRuns& runs, const Scenario& scenario, std::string_view name) {
   runner::RunOptions options = runs.options;
   if (!runs.logs.empty()) options.log = LogOf(runs, scenario.seed, name);
-  const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
+  const log::LogGuard log = options.log.empty() ? log::LogGuard() : log::LogGuard(options.log);
   runner::RunResult result = runner::RunScenario(scenario, options);
   if (result.verification && !result.verification->Holds()) {
     throw CheckFailed(

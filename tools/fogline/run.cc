@@ -26,10 +26,10 @@
 #include "tools/fogline/verbs.h"
 #include "tools/processes/run_viewer.h"
 #include "tools/replay/role_check.h"
-#include "tools/runner/kept_log.h"
-#include "tools/runner/log_keeper.h"
+#include "tools/runner/log_sealer.h"
 #include "tools/runner/resumed_log.h"
 #include "tools/runner/scenario_run.h"
+#include "tools/runner/unfinished_log_text.h"
 
 namespace fogline {
 namespace {
@@ -171,7 +171,7 @@ int RunNew(RunArguments& arguments) {
   // and has a log only with --log.
   if (!direct) runner::CheckNetwork(options);
   const bool has_log = !options.log.empty() || !direct;
-  log::LogOfRun log = !has_log              ? log::LogOfRun()
+  log::LogGuard log = !has_log              ? log::LogGuard()
                       : options.log.empty() ? cli::FreshLog(arguments.scenario.file())
                                             : cli::PrepareLog(options.log, arguments.force);
   options.log = log.path();
@@ -216,7 +216,7 @@ int Resume(RunArguments& arguments) {
     return Print(arguments, outcome);
   }
   if (options.announce) Notice(PathText(options.log) + ": the run is complete");
-  const runner::LogKeeper keeper(options.log);
+  const runner::LogSealer sealer(options.log);
   runner::LoggedRun run = runner::MeasureLoggedRun(options.log, log.scenario());
   if (!run.complete) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
@@ -229,7 +229,7 @@ int Resume(RunArguments& arguments) {
     verification = replay::VerifyRun(options.log, run, replay::OtherBuildsIn(run));
   }
   if (to_seal && verification && verification->Holds()) {
-    keeper.Seal(run, {}, {.builds = BuildsOf(*verification)}, key ? &*key : nullptr);
+    sealer.Seal(run, {}, {.builds = BuildsOf(*verification)}, key ? &*key : nullptr);
   }
   return Print(arguments, outcome);
 }

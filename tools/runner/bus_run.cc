@@ -32,9 +32,9 @@
 #include "tools/processes/child.h"
 #include "tools/processes/external_roles.h"
 #include "tools/processes/relay_process.h"
-#include "tools/runner/kept_log.h"
 #include "tools/runner/role_news.h"
 #include "tools/runner/supervisor.h"
+#include "tools/runner/unfinished_log_text.h"
 
 namespace fogline::runner {
 namespace {
@@ -266,7 +266,7 @@ void CheckNetwork(const RunOptions& options) {
 }
 
 BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
-                const std::filesystem::path& log, const LogKeeper& keeper) {
+                const std::filesystem::path& log, const LogSealer& sealer) {
   const auto hosts = hosts::Connect(options.hosts);
   std::optional<processes::RelayProcess> relay;
   if (options.transport == "tcpq") {
@@ -313,19 +313,19 @@ BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
   run.written = WrittenBy(coordinator, options.realtime);
   if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone && !options.log.empty()) {
     const auto key = runtime::KeyOf(options.traffic);
-    keeper.SealCutOff(run.written, {.builds = run.builds, .priority = run.priority},
+    sealer.SealCutOff(run.written, {.builds = run.builds, .priority = run.priority},
                       key ? &*key : nullptr);
   }
-  const std::string kept = KeptLog(conducting.run_id, options);
+  const std::string unfinished = UnfinishedLogText(conducting.run_id, options);
   // These peers are printed for every outcome, because a missing role may be in another run.
   const std::string foreign_peers = coordinator.foreign_peers().Text();
   if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
   if (coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) {
-    throw std::runtime_error(coordinator.error() + (kept.empty() ? "" : "\n  " + kept));
+    throw std::runtime_error(coordinator.error() + (unfinished.empty() ? "" : "\n  " + unfinished));
   }
   if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone) {
     throw Interrupted(fmt::format("interrupted {}{}{}", coordinator.WhereOrWaiting(),
-                                  kept.empty() ? "" : "; ", kept));
+                                  unfinished.empty() ? "" : "; ", unfinished));
   }
   return run;
 }

@@ -8,7 +8,7 @@
 #include "services/runtime/coordination/foreign_peers.h"
 #include "services/runtime/coordination/send_trouble.h"
 #include "services/runtime/wire/refusals.h"
-#include "tools/runner/log_keeper.h"
+#include "tools/runner/log_sealer.h"
 #include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
@@ -35,9 +35,9 @@ inline std::int64_t RunIdOf(const RunOptions& options) {
 }
 
 /// Runs a scenario to its end and leaves the log of the run.
-/// @param keeper seals the log of a run that ends early
+/// @param sealer seals the log of a run that ends early
 /// @throws InputError, Interrupted, std::runtime_error like RunScenario()
 BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
-                const std::filesystem::path& log, const LogKeeper& keeper);
+                const std::filesystem::path& log, const LogSealer& sealer);
 
 }  // namespace fogline::runner

@@ -33,7 +33,7 @@ DirectLog::DirectLog(const RunOptions& options, std::int64_t run_id, const Scena
     log_.emplace(file_);
     WriteScenario(PrintScenario(scenario));
   }
-  keeper_.emplace(file_);
+  sealer_.emplace(file_);
 }
 
 void DirectLog::WriteScenario(const std::string& text) {
@@ -78,13 +78,13 @@ void DirectLog::End(const RunResult& result) {
   run_.ended = true;
   run_.complete = true;
   run_.events = log_->head();
-  keeper_->Seal(run_, {log_->written()}, {.builds = builds_}, key());
+  sealer_->Seal(run_, {log_->written()}, {.builds = builds_}, key());
 }
 
 void DirectLog::CutOff() {
   if (!log_) return;
   log_->Flush();
-  keeper_->SealCutOff({log_->written()}, {.builds = builds_}, key());
+  sealer_->SealCutOff({log_->written()}, {.builds = builds_}, key());
 }
 
 }  // namespace fogline::runner

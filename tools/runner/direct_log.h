@@ -11,7 +11,7 @@
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/other_build.h"
-#include "tools/runner/log_keeper.h"
+#include "tools/runner/log_sealer.h"
 #include "tools/runner/scenario_run.h"
 
 namespace fogline::runner {
@@ -44,7 +44,7 @@ class DirectLog {
   std::optional<log::EventLogReader> old_;  // nullopt if the old log has no more steps to compare
   log::Remains remains_;
   std::optional<log::EventLogWriter> log_;
-  std::optional<LogKeeper> keeper_;
+  std::optional<LogSealer> sealer_;
   std::optional<runtime::SigningKey> key_;
   runtime::RoleBuilds builds_{};
   log::RunLog run_;

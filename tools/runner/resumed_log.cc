@@ -9,7 +9,7 @@
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/log/about/log_version.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/wire.h"

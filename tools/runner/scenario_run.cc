@@ -22,9 +22,9 @@
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/bus_run.h"
 #include "tools/runner/direct_log.h"
-#include "tools/runner/kept_log.h"
-#include "tools/runner/log_keeper.h"
+#include "tools/runner/log_sealer.h"
 #include "tools/runner/person_measures.h"
+#include "tools/runner/unfinished_log_text.h"
 
 namespace fogline::runner {
 namespace {
@@ -123,13 +123,15 @@ RunResult RunDirect(const Scenario& scenario, const RunOptions& options) {
   try {
     return Compute(scenario, options, run_id);
   } catch (const Interrupted& interrupted) {
-    const std::string kept = KeptLog(run_id, options);
-    throw Interrupted(fmt::format("{}{}{}", interrupted.what(), kept.empty() ? "" : "; ", kept));
+    const std::string unfinished = UnfinishedLogText(run_id, options);
+    throw Interrupted(
+        fmt::format("{}{}{}", interrupted.what(), unfinished.empty() ? "" : "; ", unfinished));
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    const std::string kept = KeptLog(run_id, options);
-    throw std::runtime_error(fmt::format("{}{}{}", error.what(), kept.empty() ? "" : "\n  ", kept));
+    const std::string unfinished = UnfinishedLogText(run_id, options);
+    throw std::runtime_error(
+        fmt::format("{}{}{}", error.what(), unfinished.empty() ? "" : "\n  ", unfinished));
   }
 }
 
@@ -216,7 +218,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
 }
 
 /// Compares the log with the recorder's reports, and reads the log.
-LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
+LoggedRun ReadOwnLog(const LogSealer& sealer, const std::filesystem::path& log, const BusRun& run,
                      const Scenario& scenario, const RunOptions& options) {
   const auto read = [&] {
     const log::ReadOptions whole{.has_all = true};
@@ -228,7 +230,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
                     PathText(log), logged.run_id, run.run_id));
   };
   try {
-    keeper.Check(run.written);
+    sealer.Check(run.written);
   } catch (const std::runtime_error&) {
     try {
       read();  // throws a clearer error for a log of another run
@@ -243,11 +245,11 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
 }
 
 /// Reads, verifies and seals the log of a run that has ended.
-RunResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, BusRun run,
+RunResult ReadResult(const LogSealer& sealer, const std::filesystem::path& log, BusRun run,
                      const Scenario& scenario, const RunOptions& options) {
-  LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
+  LoggedRun logged = ReadOwnLog(sealer, log, run, scenario, options);
   const auto key = runtime::KeyOf(options.traffic);
-  const bool checked = keeper.HasAllTold(run.written);
+  const bool checked = sealer.HasAllTold(run.written);
   if (!checked && !options.realtime) {
     throw std::runtime_error(
         fmt::format("{}: the log on disk is longer than what the recorder wrote", PathText(log)));
@@ -263,7 +265,7 @@ RunResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, 
     result.verification = replay::VerifyRun(log, logged, run.other_builds);
   }
   if (checked && !options.log.empty()) {
-    keeper.Seal(logged, run.written, {.builds = run.builds, .priority = run.priority},
+    sealer.Seal(logged, run.written, {.builds = run.builds, .priority = run.priority},
                 key ? &*key : nullptr);
   }
   result.checked = checked;
@@ -283,10 +285,10 @@ RunResult RunLogged(const Scenario& scenario, const RunOptions& options) {
   std::optional<TemporaryDirectory> scratch;
   std::filesystem::path log = options.log;
   if (log.empty()) log = scratch.emplace().path() / "run.lcm";
-  const LogKeeper keeper(log);
-  BusRun run = RunOnBus(scenario, options, log, keeper);
+  const LogSealer sealer(log);
+  BusRun run = RunOnBus(scenario, options, log, sealer);
   try {
-    return ReadResult(keeper, log, std::move(run), scenario, options);
+    return ReadResult(sealer, log, std::move(run), scenario, options);
   } catch (const InputError& error) {  // the log was changed since the recorder wrote it
     throw std::runtime_error(error.what());
   }

@@ -9,7 +9,7 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "scenario/io/json.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 
 namespace fogline::trials {
 

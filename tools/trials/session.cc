@@ -10,7 +10,7 @@
 #include "common/errors.h"
 #include "common/process/console.h"
 #include "common/text.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "tools/drive/seat.h"
 
 namespace fogline::trials {
@@ -97,7 +97,7 @@ class Session {
 
   std::vector<trial_t> RunLogged(const Scenario& scenario, const std::filesystem::path& path,
                                  const trial_t& base, std::unique_ptr<drive::PedalSource> pedals) {
-    log::LogOfRun log(path);
+    log::LogGuard log(path);
     std::optional<Speaker> speaker;
     std::optional<drive::Seat> seat;
     runner::RunOptions run = options_.run;

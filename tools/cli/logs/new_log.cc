@@ -37,7 +37,7 @@ bool Reserve(const std::filesystem::path& log) {
 
 }  // namespace
 
-log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
+log::LogGuard PrepareLog(const std::filesystem::path& log, bool force) {
   RequireFolderOf(log, "--log");
   std::error_code ignored;
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
@@ -65,16 +65,16 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
         "{}: error: --log: the file is no event log and is not replaced, even with --force",
         PathText(log)));
   }
-  return log::LogOfRun::InPlaceOf(log, std::move(lock));
+  return log::LogGuard::InPlaceOf(log, std::move(lock));
 }
 
-log::LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
+log::LogGuard FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
   RequireFolderOf(folder / "log", "--log");
   for (int number = 1;; ++number) {
     std::filesystem::path log =
         folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
-    if (Reserve(log)) return log::LogOfRun(log);
+    if (Reserve(log)) return log::LogGuard(log);
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 
 namespace fogline::cli {
 
@@ -12,10 +12,10 @@ namespace fogline::cli {
 /// `force` is true. It also refuses a folder that RequireFolderOf() refuses. If a killed run has
 /// left an older log of this name, the function restores the older log and says so on stderr.
 /// @throws InputError
-log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
+log::LogGuard PrepareLog(const std::filesystem::path& log, bool force);
 
 /// Makes the log "logs/STEM-N.lcm" with the first free number N, from 1 on. STEM is the scenario
 /// file's name without its extension.
-log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
+log::LogGuard FreshLog(const std::filesystem::path& scenario_file);
 
 }  // namespace fogline::cli

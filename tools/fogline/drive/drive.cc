@@ -11,7 +11,7 @@
 #include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -151,7 +151,7 @@ int Drive(DriveArguments& arguments) {
   WatchInterrupts();
   auto source = MakeSource(arguments, scenario.person);
   runner::CheckNetwork(options);
-  log::LogOfRun log = options.log.empty() ? cli::FreshLog(arguments.scenario.file())
+  log::LogGuard log = options.log.empty() ? cli::FreshLog(arguments.scenario.file())
                                           : cli::PrepareLog(options.log, arguments.force);
   options.log = log.path();
   options.on_logged_step = [&log] { log.RemoveOlder(); };

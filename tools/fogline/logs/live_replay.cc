@@ -135,7 +135,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   options.on_run = [&roles](std::int64_t run_id, const std::string& url) {
     roles.Join(run_id, url);
   };
-  log::LogOfRun log = log_.empty() ? cli::FreshLog(recorded) : cli::PrepareLog(log_, force_);
+  log::LogGuard log = log_.empty() ? cli::FreshLog(recorded) : cli::PrepareLog(log_, force_);
   options.log = log.path();
   options.on_logged_step = [&log] { log.RemoveOlder(); };
   WatchInterrupts();

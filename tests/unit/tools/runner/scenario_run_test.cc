@@ -147,11 +147,11 @@ TEST(BusRunTest, ReportsTheRunAndItsLog) {
   const std::string log = folder.File("run.lcm");
   RunOptions options;
   options.transport = "memq";
-  const runner::LogKeeper keeper(log);
-  const runner::BusRun run = runner::RunOnBus(Paper(kRunSteps), options, log, keeper);
+  const runner::LogSealer sealer(log);
+  const runner::BusRun run = runner::RunOnBus(Paper(kRunSteps), options, log, sealer);
   EXPECT_EQ(ReadToTheEnd(log).run_id, run.run_id);
-  EXPECT_TRUE(keeper.HasAllTold(run.written));
-  EXPECT_NO_THROW(keeper.Check(run.written));
+  EXPECT_TRUE(sealer.HasAllTold(run.written));
+  EXPECT_NO_THROW(sealer.Check(run.written));
   EXPECT_THAT(run.restarts, IsEmpty());
   EXPECT_THAT(run.other_builds, IsEmpty());
   EXPECT_THAT(run.builds, testing::Each(runtime::OwnBuildId()));

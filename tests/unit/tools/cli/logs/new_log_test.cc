@@ -29,7 +29,7 @@ TEST_F(NewLogTest, ReplacesALogOnlyByForce) {
   const std::string before = Content(log_);
   EXPECT_EQ(Refusal(log_, false), log_ + ": error: --log: the file exists; --force replaces it");
   {
-    const log::LogOfRun log = cli::PrepareLog(log_, true);
+    const log::LogGuard log = cli::PrepareLog(log_, true);
     EXPECT_EQ(log.path(), log_);
     EXPECT_EQ(Content(log_), "");
     EXPECT_THAT(Refusal(log_, true), HasSubstr("is being written by another run"));
@@ -39,7 +39,7 @@ TEST_F(NewLogTest, ReplacesALogOnlyByForce) {
 
 TEST_F(NewLogTest, IsMadeAndIsRemovedIfItStaysEmpty) {
   {
-    const log::LogOfRun log = cli::PrepareLog(log_, false);
+    const log::LogGuard log = cli::PrepareLog(log_, false);
     EXPECT_TRUE(std::filesystem::exists(log_));
   }
   EXPECT_FALSE(std::filesystem::exists(log_));
@@ -60,8 +60,8 @@ TEST_F(NewLogTest, HasTheNextNumberOfItsScenario) {
   const std::filesystem::path here = std::filesystem::current_path();
   std::filesystem::current_path(folder_.path());
   {
-    const log::LogOfRun first = cli::FreshLog("scenario/paper.json");
-    const log::LogOfRun second = cli::FreshLog("scenario/paper.json");
+    const log::LogGuard first = cli::FreshLog("scenario/paper.json");
+    const log::LogGuard second = cli::FreshLog("scenario/paper.json");
     EXPECT_EQ(first.path(), "logs/paper-1.lcm");
     EXPECT_EQ(second.path(), "logs/paper-2.lcm");
     EXPECT_TRUE(std::filesystem::exists(second.path()));

@@ -1,4 +1,4 @@
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -61,13 +61,13 @@ bool IsOlderLog(const std::filesystem::path& file) {
 
 }  // namespace
 
-LogOfRun::LogOfRun(const std::filesystem::path& log)
-    : LogOfRun(log, std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run")) {}
+LogGuard::LogGuard(const std::filesystem::path& log)
+    : LogGuard(log, std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run")) {}
 
-LogOfRun::LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock)
+LogGuard::LogGuard(std::filesystem::path log, std::unique_ptr<FileLock> lock)
     : path_(std::move(log)), lock_(std::move(lock)) {}
 
-LogOfRun LogOfRun::InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock) {
+LogGuard LogGuard::InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock) {
   std::error_code ignored;
   const std::filesystem::path place = std::filesystem::canonical(log, ignored);
   const std::optional<std::filesystem::path> empty = EmptyFileBeside(place);
@@ -77,12 +77,12 @@ LogOfRun LogOfRun::InPlaceOf(const std::filesystem::path& log, std::unique_ptr<F
     std::filesystem::remove(*empty, ignored);
     return {log, std::move(lock)};
   }
-  LogOfRun result(log, std::move(own));
+  LogGuard result(log, std::move(own));
   result.older_ = *empty;
   return result;
 }
 
-LogOfRun::~LogOfRun() {
+LogGuard::~LogGuard() {
   if (lock_ == nullptr) return;
   std::error_code ignored;
   const bool in_vain = IsInVain(path_);
@@ -96,7 +96,7 @@ LogOfRun::~LogOfRun() {
   }
 }
 
-void LogOfRun::RemoveOlder() {
+void LogGuard::RemoveOlder() {
   if (older_.empty()) return;
   std::error_code ignored;
   std::filesystem::remove(older_, ignored);

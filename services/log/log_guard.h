@@ -14,23 +14,23 @@ namespace fogline::log {
 /// Locks a log against other runs for the lifetime of this object. The destructor removes a log
 /// without a step, because its run never began. If this log has replaced an older log, the
 /// destructor restores the older log.
-class LogOfRun {
+class LogGuard {
  public:
   /// An object for a run without a log.
-  LogOfRun() = default;
+  LogGuard() = default;
   /// @throws InputError if another run is writing the log, or if the log cannot be written
-  explicit LogOfRun(const std::filesystem::path& log);
+  explicit LogGuard(const std::filesystem::path& log);
   /// @param lock the lock on the file
-  LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock);
+  LogGuard(std::filesystem::path log, std::unique_ptr<FileLock> lock);
   /// Puts an empty log in the place of an older log. The older log stays in the same folder as
   /// ".fogline-older-NAME" until RemoveOlder() or the end of this object. If the file system cannot
   /// exchange two files, or cannot make a file of this name, the run overwrites the older log.
   /// @param lock the lock on the older log
-  static LogOfRun InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock);
-  ~LogOfRun();
-  LogOfRun(LogOfRun&&) = default;
-  LogOfRun(const LogOfRun&) = delete;
-  LogOfRun& operator=(const LogOfRun&) = delete;
+  static LogGuard InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock);
+  ~LogGuard();
+  LogGuard(LogGuard&&) = default;
+  LogGuard(const LogGuard&) = delete;
+  LogGuard& operator=(const LogGuard&) = delete;
 
   /// Removes the older log. Call RemoveOlder() when the log has its first step. After that, a
   /// killed run leaves one log and no other file. Later calls have no effect.

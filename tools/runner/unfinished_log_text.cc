@@ -1,4 +1,4 @@
-#include "tools/runner/kept_log.h"
+#include "tools/runner/unfinished_log_text.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include "common/errors.h"
 #include "common/process/shell_word.h"
 #include "common/text.h"
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 #include "services/log/remains.h"
 #include "services/runtime/transport/lcm_url.h"
 
@@ -33,7 +33,7 @@ std::string InSeconds(Duration time) {
 
 }  // namespace
 
-std::string KeptLog(std::int64_t run_id, const RunOptions& options) {
+std::string UnfinishedLogText(std::int64_t run_id, const RunOptions& options) {
   if (options.log.empty()) return "";
   if (!HasStepsOf(run_id, options.log)) return "no log was written";
   std::string text = fmt::format("the log so far: {}", PathText(options.log));

@@ -1,5 +1,5 @@
 // The file of a log while a run writes the file.
-#include "services/log/log_of_run.h"
+#include "services/log/log_guard.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -20,15 +20,15 @@ namespace fogline::test {
 namespace {
 
 namespace fs = std::filesystem;
-using log::LogOfRun;
+using log::LogGuard;
 using log::TakeBackOlder;
 
-TEST(LogOfRunTest, OfARunThatNeverBeganIsRemovedAndALinkToItStays) {
+TEST(LogGuardTest, OfARunThatNeverBeganIsRemovedAndALinkToItStays) {
   const ScratchFolder folder;
   const fs::path log = folder.File("run.lcm");
   const fs::path link = folder.File("link.lcm");
   fs::create_symlink(log, link);
-  { const LogOfRun run(link); }
+  { const LogGuard run(link); }
   EXPECT_FALSE(fs::exists(log));
   EXPECT_TRUE(fs::is_symlink(link));
 }
@@ -38,8 +38,8 @@ class OlderLogTest : public testing::Test {
  protected:
   OlderLogTest() { WriteShortLog(log_); }
 
-  LogOfRun Replace() const {
-    return LogOfRun::InPlaceOf(
+  LogGuard Replace() const {
+    return LogGuard::InPlaceOf(
         log_, std::make_unique<FileLock>(log_, FileLock::Kind::kOwn, "--log", "run"));
   }
   /// A process begins to replace the log, calls `work`, and ends without cleanup, as after kill -9.
@@ -47,7 +47,7 @@ class OlderLogTest : public testing::Test {
   void ReplaceAndBeKilled(const Work& work) const {
     const pid_t process = fork();
     if (process == 0) {
-      const LogOfRun run = Replace();
+      const LogGuard run = Replace();
       work();
       _exit(0);
     }
@@ -63,7 +63,7 @@ class OlderLogTest : public testing::Test {
 };
 
 TEST_F(OlderLogTest, IsGoneAsSoonAsTheNewLogHasAStep) {
-  LogOfRun run = Replace();
+  LogGuard run = Replace();
   EXPECT_EQ(FilesInFolder(), 2);
   WriteShortLog(log_);
   run.RemoveOlder();
@@ -117,7 +117,7 @@ TEST_F(OlderLogTest, IsNamedIfAnotherLogHasItsPlace) {
 }
 
 TEST_F(OlderLogTest, StaysWhileItsRunGoesOn) {
-  const LogOfRun run = Replace();
+  const LogGuard run = Replace();
   EXPECT_EQ(ErrorOf([&] { TakeBackOlder(log_, "--resume"); }),
             log_ + ": error: --resume: is being written by another run (pid " +
                 std::to_string(getpid()) + ")");

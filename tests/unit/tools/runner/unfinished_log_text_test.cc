@@ -1,4 +1,4 @@
-#include "tools/runner/kept_log.h"
+#include "tools/runner/unfinished_log_text.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace fogline::test {
 namespace {
 
 using runner::CommandToGoOn;
-using runner::KeptLog;
 using runner::RunOptions;
+using runner::UnfinishedLogText;
 
 /// Default options, except for the name of the log.
 RunOptions OnlyLog() {
@@ -76,19 +76,20 @@ TEST_F(CommandToGoOnTest, IsNoneWithoutALogOrInRealTime) {
   EXPECT_EQ(CommandToGoOn(options), "");
 }
 
-TEST(KeptLogTest, TellsWhatARunHasLeft) {
+TEST(UnfinishedLogTextTest, TellsWhatARunHasLeft) {
   const ScratchFolder folder;
   RunOptions options = Direct(folder.File("run.lcm"));
-  EXPECT_EQ(KeptLog(1, options), "no log was written");
+  EXPECT_EQ(UnfinishedLogText(1, options), "no log was written");
   runner::RunScenario(Paper(10), options);
   const std::int64_t run_id = ReadToTheEnd(options.log).run_id;
   const std::string log = "the log so far: " + options.log.string();
-  EXPECT_EQ(KeptLog(run_id, options), log);
+  EXPECT_EQ(UnfinishedLogText(run_id, options), log);
   options.command_to_go_on = "COMMAND";
-  EXPECT_EQ(KeptLog(run_id, options), log + "\n  to go on: COMMAND");
-  EXPECT_EQ(KeptLog(run_id + 1, options), "no log was written") << "an older log is another run's";
+  EXPECT_EQ(UnfinishedLogText(run_id, options), log + "\n  to go on: COMMAND");
+  EXPECT_EQ(UnfinishedLogText(run_id + 1, options), "no log was written")
+      << "an older log is another run's";
   options.log.clear();
-  EXPECT_EQ(KeptLog(run_id, options), "");
+  EXPECT_EQ(UnfinishedLogText(run_id, options), "");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "tools/runner/log_keeper.h"
+#include "tools/runner/log_sealer.h"
 
 #include <sys/stat.h>
 
@@ -40,15 +40,15 @@ log_seal_t SealOf(const log::RunLog& run, const runtime::RoleBuilds& builds) {
 
 }  // namespace
 
-LogKeeper::LogKeeper(std::filesystem::path log) : log_(std::move(log)), begun_with_(Find()) {}
+LogSealer::LogSealer(std::filesystem::path log) : log_(std::move(log)), begun_with_(Find()) {}
 
-std::optional<LogKeeper::Identity> LogKeeper::Find() const {
+std::optional<LogSealer::Identity> LogSealer::Find() const {
   struct stat info {};
   if (stat(log_.c_str(), &info) != 0) return std::nullopt;
   return Identity{.device = info.st_dev, .inode = info.st_ino};
 }
 
-void LogKeeper::Check(const log::EventLogReader& file,
+void LogSealer::Check(const log::EventLogReader& file,
                       const std::vector<log::WrittenLog>& written) const {
   if (begun_with_ && Find() != begun_with_) {
     throw std::runtime_error(fmt::format(
@@ -60,9 +60,9 @@ void LogKeeper::Check(const log::EventLogReader& file,
   }
 }
 
-void LogKeeper::Check(const std::vector<log::WrittenLog>& written) const { Check(Open(), written); }
+void LogSealer::Check(const std::vector<log::WrittenLog>& written) const { Check(Open(), written); }
 
-log::EventLogReader LogKeeper::Open() const {
+log::EventLogReader LogSealer::Open() const {
   std::error_code unknown;
   if (std::filesystem::status(log_, unknown).type() == std::filesystem::file_type::not_found) {
     throw std::runtime_error(fmt::format("{}: the log was removed during the run", PathText(log_)));
@@ -74,14 +74,14 @@ log::EventLogReader LogKeeper::Open() const {
   }
 }
 
-bool LogKeeper::HasAllTold(const std::vector<log::WrittenLog>& written) const {
+bool LogSealer::HasAllTold(const std::vector<log::WrittenLog>& written) const {
   std::error_code missing;
   const auto told = std::ranges::max_element(written, {}, &log::WrittenLog::bytes);
   return told != written.end() &&
          std::filesystem::file_size(log_, missing) == static_cast<std::uintmax_t>(told->bytes);
 }
 
-void LogKeeper::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
+void LogSealer::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
                      const LoggedRoles& roles, const runtime::SigningKey* key) const {
   Check(written);
   log::LogHead events = run.events;
@@ -97,7 +97,7 @@ void LogKeeper::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>&
   log::SealLog(log_, events, std::move(seal), key);
 }
 
-void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written, const LoggedRoles& roles,
+void LogSealer::SealCutOff(const std::vector<log::WrittenLog>& written, const LoggedRoles& roles,
                            const runtime::SigningKey* key) const noexcept {
   try {
     if (!HasAllTold(written)) return;

@@ -1,4 +1,4 @@
-// Protects the log of a run. The log keeper of the runner checks that the file on the disk has the
+// Protects the log of a run. The log sealer of the runner checks that the file on the disk has the
 // bytes that the run's recorder has written. Then it seals the file, so that a later change is
 // noticed.
 #pragma once
@@ -21,10 +21,10 @@ struct LoggedRoles {
   std::optional<log::RealtimePriority> priority{};  // only in real time, if it was examined
 };
 
-class LogKeeper {
+class LogSealer {
  public:
   /// Remembers the identity of the log file at the start of the run, if there is a file.
-  explicit LogKeeper(std::filesystem::path log);
+  explicit LogSealer(std::filesystem::path log);
 
   /// @param written for each recorder of the run, the part of the log that it has last reported
   /// @throws std::runtime_error if the log was removed, another file has replaced it, or its bytes
