@@ -14,6 +14,7 @@
 #include "common/interrupt.h"
 #include "common/text.h"
 #include "services/log/run_log.h"
+#include "services/log/undecodable.h"
 #include "services/log/wall_clock.h"
 #include "services/runtime/wire/wire.h"
 
@@ -43,9 +44,7 @@ class Tabulator {
     if (bytes.empty()) return;  // a run in real time may lack a message
     if (!runtime::Decode(bytes, message_)) {
       throw InputError(
-          fmt::format("message {} of {} does not decode: was it recorded with other "
-                      "message types?",
-                      table_.messages, table_.name));
+          log::DoesNotDecode(fmt::format("message {} of {}", table_.messages, table_.name)));
     }
     if (table_.fields.empty()) BeginTable();
     next_ = 0;

@@ -16,6 +16,7 @@
 #include "scenario/io/loader.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/log/about/log_graph.h"
+#include "services/log/undecodable.h"
 #include "services/metrics/sample_decoder.h"
 #include "services/metrics/take_over/take_over_accumulator.h"
 #include "services/models/traffic/load_sumo.h"
@@ -190,9 +191,9 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
         holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
     if (sample == nullptr) {
       throw InputError(
-          fmt::format("{}: error: step {} does not decode: was it recorded with other "
-                      "message types?",
-                      PathText(log), reader.step()));
+          fmt::format("{}: error: {}", PathText(log),
+                      log::DoesNotDecode(fmt::format("step {} of {}", reader.step(),
+                                                     log::FirstUndecodable(*messages)))));
     }
     if (!first) first = sample->step;
     has_last = sample->last;

@@ -18,6 +18,7 @@
 #include "common/text.h"
 #include "services/log/run_log.h"
 #include "services/log/step_order.h"
+#include "services/log/undecodable.h"
 #include "services/log/wall_clock.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tools/export/mcap/descriptor.h"
@@ -121,9 +122,9 @@ class Exporter {
     Add(channel);
     if (!Translate(channel, bytes)) {
       throw InputError(
-          fmt::format("{}: error: message {} of {} does not decode: was it recorded with other "
-                      "message types?",
-                      PathText(log_), counts_[channel], NameOfChannel(channel)));
+          fmt::format("{}: error: {}", PathText(log_),
+                      log::DoesNotDecode(fmt::format("message {} of {}", counts_[channel],
+                                                     NameOfChannel(channel)))));
     }
     ++counts_[channel];
     const auto nanos = static_cast<std::uint64_t>(utime * kNanosPerMicro);
