@@ -319,6 +319,9 @@ std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
   if (text.size() > kMaxFileBytes) {
     return refuse(0, "too-large", fmt::format("larger than {} bytes", kMaxFileBytes));
   }
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return refuse(0, "syntax", "not JSON: the text is UTF-16; save it as UTF-8");
+  }
   // The lexer would treat a NUL byte as the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return refuse(nul, "syntax", "not JSON: a NUL byte");

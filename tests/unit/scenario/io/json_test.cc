@@ -99,6 +99,16 @@ TEST(JsonTest, RefusesANulByteWhereverItIs) {
   EXPECT_EQ(PlaceOf(std::string_view("\0", 1)), "1:1");
 }
 
+TEST(JsonTest, SaysThatATextIsUtf16) {
+  for (const std::string_view text :
+       {std::string_view("\xff\xfe[\0", 4), std::string_view("\xfe\xff\0[", 4)}) {
+    const std::vector<Diagnostic> diagnostics = JsonDiagnosticsOf(text);
+    ASSERT_EQ(diagnostics.size(), 1U);
+    EXPECT_EQ(diagnostics[0].rule, "syntax");
+    EXPECT_EQ(diagnostics[0].message, "not JSON: the text is UTF-16; save it as UTF-8");
+  }
+}
+
 TEST(JsonTest, ReportsEveryDuplicateKeyWithItsPointer) {
   const auto diagnostics =
       JsonDiagnosticsOf(R"({"a": [{"x/y": 1, "b": 2, "x/y": 3, "x/y": 4}], "a": 5})");
