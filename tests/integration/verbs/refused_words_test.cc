@@ -59,6 +59,8 @@ TEST(RefusedWordsTest, RefusesWhatWouldHaveNoEffect) {
               HasSubstr("error: --restarts: a run with --transport direct has no processes"));
   EXPECT_THAT(ErrorOf({"check", "--explain", "/fog/bias_m", "nope.json"}),
               HasSubstr("error: --explain: neither a FILE nor --set has an effect on it"));
+  EXPECT_THAT(ErrorOf({"experiment", "check", "--schema", "nope.json"}),
+              HasSubstr("error: --schema: a FILE has no effect on it"));
   EXPECT_THAT(ErrorOf({"sweep", scenario, "--grid", "/arbitrator/threshold=0.5", "--set",
                        "/arbitrator/threshold=0.9"}),
               HasSubstr("error: --set /arbitrator/threshold: the values are those of --grid"));

@@ -194,6 +194,9 @@ void PrintPlan(const trials::PlanFile& plan) {
 }
 
 int CheckPlans(const CheckPlanArguments& arguments) {
+  if (arguments.schema && !arguments.files.empty()) {
+    throw InputError("error: --schema: a FILE has no effect on it");
+  }
   if (arguments.schema) {
     fmt::print("{}", ExperimentSchema());
     return kDone;
