@@ -13,6 +13,7 @@
 #include "services/graph.h"
 #include "services/runtime/process/version.h"
 #include "tools/doctor/doctor_findings.h"
+#include "tools/processes/child.h"
 #include "tools/processes/process_group.h"
 #include "tools/spy/spy_parts.h"
 
@@ -21,6 +22,13 @@ namespace {
 
 using Level = Finding::Level;
 namespace fs = std::filesystem;
+
+/// What to do if a target of the build is missing: the command that builds it, or, for installed
+/// programs, `otherwise`.
+std::string BuildOr(std::string_view target, const char* otherwise) {
+  const std::string command = processes::BuildCommand(target);
+  return command.empty() ? otherwise : command;
+}
 
 void ExamineJava(Findings& findings) {
   const fs::path java = spy::JavaProgram();
@@ -55,7 +63,8 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
   }
   findings.push_back({"lcm_spy_types", Level::kWarning,
                       "the message types for lcm-spy are not built: it decodes nothing",
-                      "ninja -C build fogline_lcmtypes_java (needs default-jdk)"});
+                      "apt-get install default-jdk; " +
+                          BuildOr("fogline_lcmtypes_java", "build and install Fogline again")});
 }
 
 /// First line of the output of each role's program when it is called with --version.
@@ -111,7 +120,7 @@ void ExaminePrograms(const fs::path& programs, Findings& findings) {
          version == versions.end()
              ? fmt::format("{} cannot be run", program)
              : fmt::format("{} is \"{}\", but fogline is \"{}\"", program, version->second, own),
-         "ninja -C build fogline_programs"});
+         BuildOr("fogline_programs", "install all programs of one version of Fogline")});
   }
   if (!good) return;
   findings.push_back(

@@ -156,15 +156,19 @@ std::string HowItEnded(int status) {
 
 std::filesystem::path ProgramBeside(std::string_view name) { return OwnFolder() / name; }
 
-std::string HowToBuild(std::string_view name) {
+std::string BuildCommand(std::string_view target) {
   std::error_code error;
   const std::filesystem::path build = OwnFolder().parent_path();
   if (!std::filesystem::exists(build / "build.ninja", error)) return "";
   const std::filesystem::path here = std::filesystem::current_path(error);  // "" if it is deleted
   const std::filesystem::path from_here = build.lexically_relative(here);
   const bool is_below = !from_here.empty() && *from_here.begin() != "..";
-  return fmt::format("; it is built by: ninja -C {} {}",
-                     ShellWord((is_below ? from_here : build).string()), name);
+  return fmt::format("ninja -C {} {}", ShellWord((is_below ? from_here : build).string()), target);
+}
+
+std::string HowToBuild(std::string_view name) {
+  const std::string command = BuildCommand(name);
+  return command.empty() ? "" : "; it is built by: " + command;
 }
 
 std::filesystem::path BuiltProgramBeside(std::string_view name) {

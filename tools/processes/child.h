@@ -79,6 +79,8 @@ std::string HowItEnded(int status);
 
 /// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
+/// The command that builds a target of CMake; "" if the running program is not in a build folder.
+std::string BuildCommand(std::string_view target);
 /// The end of an error about a program that is missing, because not every build has it: the command
 /// that builds it; "" if the running program is not in a build folder.
 std::string HowToBuild(std::string_view name);

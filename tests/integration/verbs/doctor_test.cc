@@ -126,8 +126,20 @@ TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
   EXPECT_THAT(doctor.out,
               HasSubstr("problem  " + radar +
                         " is \"0.0.1, message types 0123456789abcdef\", but fogline is"));
-  EXPECT_THAT(doctor.out, HasSubstr("problem  " + folder.File("fogline-world") +
-                                    " cannot be run  -> ninja -C build fogline_programs\n"));
+  EXPECT_THAT(doctor.out,
+              HasSubstr("problem  " + folder.File("fogline-world") +
+                        " cannot be run  -> install all programs of one version of Fogline\n"));
+}
+
+TEST(DoctorTest, NamesTheCommandThatBuildsAMissingProgram) {
+  const ScratchFolder build;
+  std::ofstream(build.File("build.ninja")) << "";
+  std::filesystem::create_directory(build.File("bin"));
+  std::filesystem::copy_file(Program("fogline"), build.File("bin/fogline"));
+  const Outcome doctor =
+      RunCommand({build.File("bin/fogline"), "doctor", "--lcm-url", "tcpq://127.0.0.1:1"});
+  EXPECT_THAT(doctor.out, HasSubstr(" cannot be run  -> ninja -C "));
+  EXPECT_THAT(doctor.out, HasSubstr(build.path().filename().string() + " fogline_programs\n"));
 }
 
 /// Machines without a network, or with a network of their own.
