@@ -149,7 +149,8 @@ class ClosedLoop {
   void RestartArbitrator(const Scenario& scenario);
   /// Computes the arbitrator's message from the messages of `shared`.
   void ArbitrateFor(const ClosedLoop& shared);
-  /// Whether the last messages of both arbitrators have the same effect on the other roles.
+  /// Whether the last HOST_COMMANDs of this loop and of `other` have the same effect on the other
+  /// roles.
   bool CommandsAs(const ClosedLoop& other) const;
   /// Copies the state of all other roles, and the messages of the step. ComputeAfterArbitrator()
   /// comes next. @pre ArbitrateFor(shared) was called in this step

@@ -28,7 +28,7 @@ class History {
   History(const History&) = delete;
   History& operator=(const History&) = delete;
 
-  /// Adds the next step, which ends before this byte.
+  /// Adds the next step. @param end offset of the first byte after the step
   void Add(std::int64_t end);
   /// The number of known steps.
   std::int64_t steps() const { return steps_; }

@@ -1,5 +1,5 @@
-// The checksums of a sweep's rows. Input: the bytes of FILE.sums as a datagram, and each row of
-// FILE as a datagram.
+// The checksums of a sweep's rows. The input is a list of pieces (Datagram() in fuzz.h): first the
+// bytes of FILE.sums, then each row of FILE.
 #include <unistd.h>
 
 #include <filesystem>

@@ -97,8 +97,8 @@ class TakeOver {
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
   /// Whether a manoeuvre has begun in this run, even if the driver has ended this manoeuvre.
   bool manoeuvred() const { return manoeuvre_.begun(); }
-  /// Whether the driver got the authority last by an override; false again after a return to the
-  /// automation.
+  /// Whether the driver took the authority by an override when it last took it; false again after a
+  /// return to the automation.
   bool overridden() const { return overridden_; }
 
  private:

@@ -29,9 +29,9 @@ class ForeignPeers {
  public:
   /// The largest number of processes that are reported.
   static constexpr std::size_t kMax = 32;
-  /// The largest number of processes that are remembered. A role sends a STATUS at least five times
-  /// a second. If a flood has at most 5,000 invented names a second, the role's next STATUS comes
-  /// before its process is forgotten.
+  /// The largest number of processes that are remembered. A role sends a STATUS at least every 0.2
+  /// s. In this time a flood of 5,000 invented names a second adds 1,000 names, so it does not
+  /// displace a genuine process.
   static constexpr std::size_t kMaxWatched = 1024;
 
   /// Counts a STATUS of a foreign process. A STATUS whose role does not exist is ignored. Host

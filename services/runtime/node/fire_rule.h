@@ -10,8 +10,8 @@
 
 namespace fogline::runtime {
 
-/// The rule of one role, made when the role joins a run. Its constructor gets the parts of the node
-/// (parts.h).
+/// Decides when one role computes a step, and what the role does if inputs are missing. The rule is
+/// made when the role joins a run. Its constructor gets the parts of the node (parts.h).
 class FireRule {
  public:
   virtual ~FireRule() = default;

@@ -122,7 +122,8 @@ class Client {
   std::vector<std::uint8_t> frame_;    // the frame that is being sent
   std::size_t sent_unread_ = 0;        // bytes sent since the last read
   std::vector<std::string> patterns_;  // subscriptions for the relay
-  // A handler may subscribe, and so add a handler. The handlers of a deque do not move then.
+  // A handler that runs may subscribe, which adds a handler. A deque does not move its elements
+  // when one is added.
   std::deque<std::pair<std::string, Handler>> handlers_;
   Watcher watcher_;
   /// The event for which a lost connection waits before it works again.

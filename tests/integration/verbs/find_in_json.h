@@ -8,7 +8,8 @@
 
 namespace fogline::test {
 
-/// @return the first object that has this value; null if there is none, and the test then fails
+/// @return the first object whose `key` has this value. If there is none, the test fails, and the
+/// result is null.
 inline const nlohmann::json& Find(const nlohmann::json& array, const std::string& key,
                                   const std::string& value) {
   static const nlohmann::json kNone;

@@ -36,7 +36,7 @@ struct DelayAndShare {
   double share;
 };
 /// @param shortest_s delays that differ by less than this time count as the same time
-/// @return kRanks if there are no detectors
+/// @return whether the condition can rank the detectors; kRanks if there are no detectors
 Telling TellingOf(std::span<const DelayAndShare> detectors, double shortest_s);
 
 }  // namespace fogline::study

@@ -53,7 +53,7 @@ enum class MixedRadar {
 
 /// All rules. The first family has the fixed thresholds, in ascending order.
 std::vector<RuleFamily> RuleFamilies();
-/// The members with these names, in their families.
+/// The families with only the rules of these names. A family without such a rule is left out.
 std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
 
 /// Runs all situations. Each seed has one situation, which is the same for every rule, human and

@@ -42,8 +42,9 @@ class OpenRequest {
   const std::optional<Request>& request() const { return request_; }
 
  private:
-  /// The begin of a request also counts as known if the last known state is older by at most this
-  /// time. Our choice: a fifth of a second, because the countdown shows whole seconds.
+  /// The beginning of a request also counts as known if the command before the request is missing,
+  /// and the last known command is at most this much older. Our choice: a fifth of a second,
+  /// because the countdown shows whole seconds.
   static constexpr std::int64_t kMostGap_us = 200'000;
 
   static bool Asks(std::int8_t mode) {

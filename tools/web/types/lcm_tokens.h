@@ -19,8 +19,9 @@ struct LcmToken {
   std::string comment_behind;
 };
 
-/// The words of a text, and a last word of kind kEnd. A comment belongs to the word behind it if no
-/// blank line is between them. A comment behind a word on the same line belongs to this word.
+/// The words of a text, and a last word of kind kEnd. A comment after a word on the same line
+/// belongs to this word. Any other comment belongs to the next word, unless a blank line is between
+/// them.
 /// @param file name of the file for errors
 /// @throws InputError for a character that the language does not have, or a comment without an end
 std::vector<LcmToken> LcmTokens(std::string_view text, std::string_view file);

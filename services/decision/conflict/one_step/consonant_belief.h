@@ -1,5 +1,5 @@
-// Sensor readings as least-committed consonant beliefs, and measures of evidence theory for two
-// beliefs.
+// Represents a sensor reading as a belief of evidence theory (Dempster-Shafer): the least-committed
+// one with nested focal sets (consonant). Also computes measures of conflict between two beliefs.
 #pragma once
 
 #include <array>

@@ -218,8 +218,8 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   m.driver.readiness = 1;
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
-  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower, by 5 m/50 m for the visibility
-  // and by 0.5 s/5 s for the follower's TTC
+  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower by 0.2: by 0.1 for the
+  // visibility (gain 5 m, visibility 50 m), and by 0.1 for the follower (gain 0.5 s, TTC 5 s)
   arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }

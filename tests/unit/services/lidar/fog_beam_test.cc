@@ -128,8 +128,8 @@ TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
           (optics.overlap_end_m - optics.overlap_start_m + 0.5 * optics.pulse_length_m) / 200.0;
       const lidar::FogPeak expected = BruteForce(optics, extinction_pm, step_m);
       const lidar::FogPeak peak = lidar::FindFogPeak(optics, extinction_pm);
-      // The tolerances are the errors of the grids at the kinks of the overlap: 0.3 % in the peak's
-      // strength, two steps in its range.
+      // The overlap of beam and field of view has kinks. Near a kink, a search on a grid errs by up
+      // to 0.3 % in the peak's strength, and by two grid steps in its range.
       EXPECT_NEAR(peak.strength_pm / expected.strength_pm, 1.0, 3e-3)
           << optics.pulse_length_m << " " << extinction_pm;
       EXPECT_NEAR(peak.range_m, expected.range_m, 2.0 * step_m)

@@ -34,7 +34,7 @@ struct ShortLog {
       [](std::string_view, std::int64_t) { return true; };
   /// If set, the log ends with a STATUS of the world that has this step and the state DONE.
   std::optional<std::int64_t> done;
-  /// Whether a log in real time has a STATUS of the world.
+  /// Whether the log of a run in real time has a STATUS of the world.
   bool status = true;
   /// If set, the log ends with a STATUS of the radar that has computed this number of steps.
   std::optional<std::int64_t> radar_ticks;

@@ -17,7 +17,8 @@ namespace {
 
 using Shares = std::vector<double>;
 
-// A point meets the target within this radius of a minimum. Two minima are at least kApart apart.
+// A point meets the target if it is within this radius of a minimum. Two minima are at least kApart
+// apart.
 constexpr double kRadius = 0.02;
 constexpr double kApart = 0.3;
 
