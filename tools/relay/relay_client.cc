@@ -22,6 +22,9 @@ using boost::system::error_code;
 // A client has to send its magic (the first bytes of the tcpq protocol) within this time after it
 // connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
+// The relay waits at most this long until a client reads. The time is our choice: it is longer than
+// a busy machine leaves a process without a processor.
+constexpr std::chrono::seconds kLongestPause(5);
 
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
   error_code error;
@@ -46,6 +49,7 @@ RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
       socket_(std::move(socket)),
       address_(AddressOf(socket_)),
       greeting_(socket_.get_executor()),
+      pause_(socket_.get_executor()),
       parser_(runtime::tcpq::kClientMagic, relay.options_.limits),
       subscriptions_(relay.options_.subscriptions),
       read_(kWorthACall) {}
@@ -88,6 +92,7 @@ bool RelayClient::Wants(std::string_view channel) {
 void RelayClient::Drop(const std::string& why) {
   if (std::exchange(gone_, true)) return;
   greeting_.cancel();
+  pause_.cancel();
   error_code ignored;
   socket_.close(ignored);
   relay_.Leave(id_, address_, why);
@@ -101,8 +106,29 @@ void RelayClient::Read() {
                             self->Take(runtime::Bytes(self->read_).first(size));
                             if (self->gone_) return;
                             AcknowledgeAtOnce(self->socket_);
-                            self->Read();
+                            self->ReadOrPause();
                           });
+}
+
+bool RelayClient::IsHalfFull() const {
+  return sending_.size() + waiting_.size() > relay_.options_.queue_bytes / 2;
+}
+
+void RelayClient::ReadOrPause() {
+  if (has_waited_ || !IsHalfFull()) return Read();
+  paused_ = true;
+  pause_.expires_after(kLongestPause);
+  pause_.async_wait([self = shared_from_this()](error_code cancelled) {
+    if (cancelled || self->gone_) return;
+    self->has_waited_ = true;
+    self->ReadAfterPause();
+  });
+}
+
+void RelayClient::ReadAfterPause() {
+  if (!std::exchange(paused_, false)) return;
+  pause_.cancel();
+  Read();
 }
 
 void RelayClient::Take(runtime::Bytes bytes) {
@@ -143,6 +169,10 @@ void RelayClient::Write() {
                       if (error) {
                         self->deaf_ = true;
                         self->waiting_.clear();
+                      }
+                      if (!self->IsHalfFull() && !self->gone_) {
+                        self->has_waited_ = false;
+                        self->ReadAfterPause();
                       }
                       self->Write();
                     });

@@ -37,6 +37,11 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
 
  private:
   void Read();
+  /// Reads on, or pauses if the queue is half full: the client may publish faster than it reads,
+  /// and its own messages would then fill its queue.
+  void ReadOrPause();
+  void ReadAfterPause();
+  bool IsHalfFull() const;
   void Take(runtime::Bytes bytes);
   void Handle(const runtime::tcpq::Frame& frame);
   void Write();
@@ -47,13 +52,16 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   tcp::socket socket_;
   const std::string address_;
   boost::asio::steady_timer greeting_;  // runs until the client has sent its magic
+  boost::asio::steady_timer pause_;     // runs during a pause
   runtime::tcpq::FrameParser parser_;
   Subscriptions subscriptions_;
   std::vector<std::uint8_t> read_;
   std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
   std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
-  bool deaf_ = false;  // whether writing has failed; the client's messages are still read
+  bool paused_ = false;      // whether the relay waits before it reads on
+  bool has_waited_ = false;  // whether the relay has waited long enough with a queue this full
+  bool deaf_ = false;        // whether writing has failed; the client's messages are still read
   bool gone_ = false;
 };
 

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +50,32 @@ class RawSocket {
         return false;
       }
       bytes = bytes.subspan(static_cast<std::size_t>(size));
+    }
+    return true;
+  }
+  /// Sends these bytes again and again, until the other side has accepted none of them for half a
+  /// second, or until `most` bytes are sent. @return the number of bytes; 0 if the connection is
+  /// lost
+  std::size_t SendUntilFull(runtime::Bytes bytes, std::size_t most) const {
+    std::size_t sent = 0;
+    while (sent < most) {
+      const runtime::Bytes rest = bytes.subspan(sent % bytes.size());
+      const ssize_t size = send(fd_, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (size > 0) sent += static_cast<std::size_t>(size);
+      if (size > 0) continue;
+      if (errno != EAGAIN) return 0;
+      pollfd room{.fd = fd_, .events = POLLOUT, .revents = 0};
+      if (poll(&room, 1, 500) == 0) break;
+    }
+    return sent;
+  }
+  /// Reads this number of bytes. @return false if the other side closes the connection before
+  bool Read(std::size_t count) const {
+    Payload bytes(1 << 16);
+    while (count > 0) {
+      const ssize_t size = recv(fd_, bytes.data(), std::min(count, bytes.size()), 0);
+      if (size <= 0) return false;
+      count -= static_cast<std::size_t>(size);
     }
     return true;
   }
@@ -121,6 +150,22 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   // THEN the relay disconnects the publisher before all messages are sent
   EXPECT_LT(sent, 1000);
   EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read; "));
+}
+
+TEST(HostileRelayClientTest, IsWaitedForIfItReadsAfterItHasPublished) {
+  Relay relay({"--max-queue", "4"});
+  const RawSocket publisher(relay.port());
+  ASSERT_TRUE(publisher.Send(SubscriptionTo("ECHO")));
+  // WHEN the publisher sends without reading, until the relay accepts nothing more
+  constexpr std::size_t kMost = 200'000'000;
+  const Payload message = Message("ECHO", Payload(1000));
+  const std::size_t sent = publisher.SendUntilFull(message, kMost);
+  ASSERT_GT(sent, 2'000'000U) << relay.process().Err();
+  EXPECT_LT(sent, kMost);
+  // THEN every message comes back
+  const std::size_t back = sent / message.size() * message.size();
+  EXPECT_TRUE(publisher.Read(Greeting().size() + back)) << relay.process().Err();
+  EXPECT_EQ(relay.process().Err(), "");
 }
 
 TEST(HostileRelayClientTest, DisconnectsAClientThatSendsGarbageAndNamesTheReason) {
