@@ -51,9 +51,9 @@ function(fogline_add_role name)
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
 endfunction()
 
-# fogline_add_campaign(NAME TIMEOUT_S COMMAND ARGUMENT... [PROGRAMS TARGET...] [PROPERTIES ...]): adds a
-# test with the label campaign. The default build leaves PROGRAMS out. The test campaign.Programs
-# builds them, and runs before a campaign that needs them.
+# fogline_add_campaign(NAME TIMEOUT_S COMMAND ARGUMENT... [PROGRAMS TARGET...] [PROPERTIES ...]):
+# adds a test with the label campaign. The default build leaves PROGRAMS out. The test
+# campaign.Programs builds them, and runs before a campaign that needs them.
 function(fogline_add_campaign name timeout_s)
   cmake_parse_arguments(PARSE_ARGV 2 campaign "" "" "COMMAND;PROGRAMS;PROPERTIES")
   add_test(NAME ${name} COMMAND ${campaign_COMMAND})
@@ -80,8 +80,8 @@ endfunction()
 # (tests/support/command.h), so that it ends only tests that hang, even on a busy machine.
 set(FOGLINE_TEST_LIMIT_S 900)
 
-# fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program NAME_tests.
-# With FOGLINE_UNITY, all files of a folder are compiled as one.
+# fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program
+# NAME_tests. With FOGLINE_UNITY, all files of a folder are compiled as one.
 function(fogline_add_test_program name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cc")
   add_executable(${name}_tests ${sources})
@@ -110,12 +110,12 @@ function(fogline_add_test_program name)
     GTest::gtest GTest::gmock GTest::gtest_main)
 endfunction()
 
-# fogline_add_tests(NAME LIBS...): builds the program of fogline_add_test_program(); each TEST is
-# one test of ctest. The names of the tests begin with NAME: "unit.RadarTest.Name".
+# fogline_add_tests(NAME LIBS...): calls fogline_add_test_program(), and makes each TEST of the
+# program a test of ctest. The names of the tests begin with NAME: "unit.RadarTest.Name".
 function(fogline_add_tests name)
   fogline_add_test_program(${name} ${ARGN})
-  # Only one test of a run in real time runs at a time, because two such tests would delay each
-  # other.
+  # Of the tests that make a run in real time, only one runs at a time, because two such tests would
+  # delay each other.
   set(realtime "*InRealtime*:*RealtimeTest.*:*UnderLoad*:DeafRoleTest.*:RealtimeHorizonTest.*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_FILTER "-${realtime}"

@@ -4,8 +4,8 @@
 # LCM's decoders check the lengths in a message too late or only in part, and do not overwrite every
 # part of an object:
 #
-# 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The check
-#    refuses a length below 0 or above the number of bytes left in the message.
+# 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The
+#    check refuses a length below 0 or above the number of bytes left in the message.
 # 2. A string may lack its terminator, have the length 0 or less, or have a zero byte before its
 #    end. If such a message were encoded again, its bytes would differ. The check refuses all three.
 # 3. If an array of numbers is empty in the message, the decoder does not change the object's array.
@@ -28,7 +28,8 @@ for header in "$@"; do
   numbers=$(count 'std::vector< (double|float|u?int[0-9]+_t) > ' "$header")
 
   sed -i -E 's/^( *)(this->[a-z0-9_]+)[.]resize[(](this->[a-z0-9_]+)[)];/\1if (\3 < 0 || \3 > maxlen) return -1;\n\1\2.resize(static_cast<std::size_t>(\3));/' "$header"
-  # The name of a string's length ends with two underscores, but not if the string is in an array.
+  # lcm-gen names the length of a string __NAME_len__. The length of a string in an array is
+  # __elem_len, without underscores at the end.
   sed -i -E 's/if[(](__[a-z0-9_]+_len(__)?) > maxlen - pos[)] return -1;/if(\1 < 1 || \1 > maxlen - pos) return -1;\n    if(memchr((const char*)buf + offset + pos, 0, \1) != (const char*)buf + offset + pos + \1 - 1) return -1;/' "$header"
   sed -i -z -E 's/if[(](this->[a-z0-9_]+)[)] [{]\n( *if [(][^\n]*\n *)(this->[a-z0-9_]+)[.]resize/\3.clear();\n    if(\1) {\n\2\3.resize/g' "$header"
 

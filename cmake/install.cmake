@@ -1,6 +1,6 @@
-# `cmake --install build --prefix DIR` installs into DIR: the programs, the scenarios, completion for
-# shells, the message types (.lcm files, C++ headers, and the jar if it was built), and the package
-# for C++ roles of other projects. find_package(fogline) gives these projects the target
+# `cmake --install build --prefix DIR` installs into DIR: the programs, the scenarios, completion
+# for shells, the message types (.lcm files, C++ headers, and the jar if it was built), and the
+# package for C++ roles of other projects. find_package(fogline) gives these projects the target
 # fogline::runtime. Each part belongs to a component; cmake/package.cmake makes a Debian package of
 # each component.
 include(CMakePackageConfigHelpers)
@@ -12,7 +12,7 @@ foreach(service IN LISTS FOGLINE_SERVICES)
 endforeach()
 install(TARGETS ${FOGLINE_PROGRAMS} RUNTIME DESTINATION bin COMPONENT fogline)
 
-if(TARGET fogline_sumo)  # load_sumo.h looks for the module there
+if(TARGET fogline_sumo)  # load_sumo.h looks for the module in lib/fogline
   install(TARGETS fogline_sumo LIBRARY DESTINATION lib/fogline COMPONENT fogline)
 endif()
 # lib/fogline has the libraries that only the programs use.

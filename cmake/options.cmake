@@ -20,8 +20,8 @@ set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
 # Compiles several source files as one, because the headers take most of the compiler's time. If the
 # option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
-# The option is for tools/mutate, which changes one file of a library at a time, and no file of a
-# test.
+# This option is for tools/mutate, which changes one file of a library at a time. So it is faster to
+# compile the files of a library one by one. tools/mutate changes no file of a test.
 option(FOGLINE_UNITY_TESTS_ONLY "Compile only tests in this way" OFF)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
 if(FOGLINE_UNITY_TESTS_ONLY)
@@ -29,8 +29,8 @@ if(FOGLINE_UNITY_TESTS_ONLY)
 endif()
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
-# GCC collects its garbage only when it holds this much memory, in KiB. This saves a tenth of
-# the time.
+# GCC looks for memory that it can reuse (garbage collection) only when it holds this much memory,
+# in KiB. With so large a value, GCC takes a tenth less time.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=1000000)
 endif()

@@ -91,7 +91,7 @@ files for lcm-gen.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-# The extension module is made for one version of Python.
+# The extension module is made for one version of Python, so the package depends on that version.
 get_property(python_depends GLOBAL PROPERTY FOGLINE_PYTHON_DEPENDS)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${python_depends}, fogline (= ${PROJECT_VERSION})")
 foreach(file IN ITEMS postinst prerm)
@@ -105,7 +105,7 @@ This package has the Python module fogline_lab: logs as pandas tables, runs,
 tables and sweeps, live messages, and roles in Python.")
 include(CPack)
 
-# CPack with Ninja builds nothing itself.
+# CPack with Ninja builds no programs, so this target depends on the programs.
 set(packages "${CMAKE_BINARY_DIR}/packages")
 add_custom_target(fogline_packages
   COMMAND "${CMAKE_COMMAND}" -E rm -rf "${packages}"

@@ -209,7 +209,7 @@ void AtomicFile::Finish() {
 
 bool AtomicFile::FinishNew() {
   Close();
-  if (link(part_.c_str(), target_.c_str()) == 0) return true;  // ~AtomicFile() removes the old name
+  if (link(part_.c_str(), target_.c_str()) == 0) return true;  // ~AtomicFile() unlinks part_
   if (errno == EEXIST) return false;
   if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS) Fail(errno);
   // The file system has no hard links.

@@ -51,7 +51,8 @@ class AtomicFile {
   void Finish();
 
   /// Gives the file its name only if no file has this name. If several processes do so at the same
-  /// time, only one succeeds, except on a file system without hard links. @pre !is_stream()
+  /// time, only one succeeds. The exception is a file system that has no hard links, and also
+  /// cannot rename a file under the condition that the new name is free. @pre !is_stream()
   /// @return false if there is a file of this name, which stays unchanged
   /// @throws std::runtime_error
   bool FinishNew();

@@ -1,5 +1,5 @@
-// Reads columns of numbers from a CSV file with commas, a header line, and no quotes. Writes texts
-// as cells.
+// Reads columns of numbers from a CSV file with commas, a header line, and no quotes. Also writes a
+// text as a cell.
 #pragma once
 
 #include <cstdint>

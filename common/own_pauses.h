@@ -1,6 +1,6 @@
 // The times in which this process itself could not run: it was stopped (Ctrl-Z), was frozen with
-// its container, or waited for a disk. If messages of another process are missing in such a time,
-// the other process may still be healthy.
+// its container, or waited for a disk. In such a time this process receives no messages of another
+// process, although the other process may be healthy.
 //
 // A suspend of the machine does not count, because Clock does not advance during the suspend.
 #pragma once
@@ -32,7 +32,8 @@ class OwnPauses {
     return looked_ = now;
   }
 
-  /// The time from `since` to `now`, minus the pauses of this process.
+  /// The time from `since` to `now`, minus the pauses of this process. Only this time counts as
+  /// silence of another process.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     Duration held = now - since;
     for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {

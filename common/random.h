@@ -17,8 +17,8 @@
 
 namespace fogline {
 
-/// The purpose of random numbers. The random numbers depend on the number of their stream. So never
-/// reuse or change the number of a stream.
+/// The streams of random numbers, one for each purpose. The random numbers depend on the number of
+/// their stream. So never reuse or change the number of a stream.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,
@@ -50,7 +50,7 @@ class Random {
   Random(std::int64_t seed, Stream stream)
       : seed_(static_cast<std::uint64_t>(seed)), stream_(static_cast<std::uint32_t>(stream)) {}
 
-  /// Whether both have the same numbers.
+  /// Whether both objects give the same random numbers.
   bool operator==(const Random&) const = default;
 
   /// Two independent numbers, uniform in (0, 1), of draw `index` in step `step`.
@@ -73,7 +73,9 @@ class Random {
   }
 
  private:
-  // The centre of one of 2^52 equal cells of (0, 1). The result is exact, and never 0 or 1.
+  // The interval (0, 1) is divided into 2^52 equal cells. 52 of the 64 random bits choose a cell,
+  // and the result is the centre of this cell. A double can represent each centre exactly, and no
+  // centre is 0 or 1.
   static double ToUnit(std::uint32_t high, std::uint32_t low) {
     const std::uint64_t cell = (static_cast<std::uint64_t>(high) << 20) ^ (low >> 12);
     return (static_cast<double>(cell) + 0.5) * 0x1p-52;

@@ -75,7 +75,7 @@ bool IsUnseen(char32_t c) {
       kUnseen, [c](const Block& block) { return c >= block.first && c <= block.last; });
 }
 
-// The escape sequence of a JSON string, in units of UTF-16.
+// The character as JSON escapes it: one or two units of UTF-16.
 std::string Escaped(char32_t c) {
   if (c < 0x10000) return fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c));
   const std::uint32_t rest = c - 0x10000;
@@ -166,8 +166,8 @@ std::string Names(std::span<const std::string_view> names) {
 }
 
 std::size_t EditDistance(std::string_view a, std::string_view b) {
-  // Distances between the prefixes of a and b: rows i - 2, i - 1 and i. A row has one prefix of a
-  // and every prefix of b.
+  // Row i has the distances between the first i characters of a and every prefix of b. Three rows
+  // are stored: i - 2 (`before`), i - 1 (`previous`) and i (`current`).
   std::vector<std::size_t> before(b.size() + 1);
   std::vector<std::size_t> previous(b.size() + 1);
   std::vector<std::size_t> current(b.size() + 1);

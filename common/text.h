@@ -49,8 +49,8 @@ std::string WithUnit(std::string_view text, std::string_view unit);
 std::string Names(std::span<const std::string_view> names);
 
 /// Least number of edits that turn `a` into `b`: insertions, deletions, substitutions and swaps of
-/// neighbours. (This is the optimal string alignment: Damerau-Levenshtein without repeated edits of
-/// one position.)
+/// neighbours. (The name of this distance is "optimal string alignment". It is the
+/// Damerau-Levenshtein distance with the condition that no position is edited twice.)
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `word`, if it is near enough for a suggestion. If several candidates
@@ -68,7 +68,7 @@ bool HasControlCharacter(std::string_view text);
 
 bool IsUtf8(std::string_view text);
 
-/// 3 when the text begins with UTF-8's byte order mark, otherwise 0.
+/// The size of UTF-8's byte order mark in bytes (3) if the text begins with this mark; otherwise 0.
 std::size_t SkipByteOrderMark(std::string_view text);
 
 }  // namespace fogline

@@ -1,8 +1,9 @@
 // Finds the inputs and outputs of an algorithm from the types of its Step function. The graph table
 // (graph.h) then gives the channels and the role of the algorithm.
 //
-// An algorithm may have one more input, an input on demand. The algorithm uses this input only in
-// some scenarios. An algorithm with such an input has these two functions.
+// An algorithm may have one input in addition to the inputs of Step: an input on demand. The
+// algorithm uses this input only in some scenarios. An algorithm with an input on demand has these
+// two functions.
 //
 //     static bool UsesOnDemandInput(const Scenario& scenario);  // whether the input is used
 //     void SetOnDemandInput(const M& message);                  // called before each Step, if used
@@ -23,8 +24,9 @@
 // person is there (services/runtime/seat/seat_gate.h). The output of the algorithm contains the
 // instance and the sequence number of this message, so a replay can find the message in the log.
 //
-// Every algorithm but the arbitrator can be copied. The copy continues the run from the same step.
-// An algorithm whose copies would share a part of the state in some scenarios has this function.
+// Every algorithm except the arbitrator can be copied. The copy continues the run from the same
+// step. In some scenarios, the copies of an algorithm may share a part of their state. Such an
+// algorithm has this function, which returns true for these scenarios.
 //
 //     static bool CopiesShareState(const Scenario& scenario);
 //

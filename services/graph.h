@@ -1,5 +1,6 @@
-// The table of every role and every channel of Fogline. The wiring of the nodes, the recorder, the
-// digest, the monitors, the tests and the tables in the README use this table.
+// The table of all roles and all channels of Fogline. The code that connects processes to channels,
+// the recorder, the digest, the monitors and the tests use this table. The tables in README.md and
+// docs/architecture.md are made from it.
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ namespace fogline {
 #define FOGLINE_ROLE_VALUE(folder, Class, purpose) k##Class,
 enum class Role : std::uint8_t {
   FOGLINE_ROLES(FOGLINE_ROLE_VALUE)  // the roles that compute messages
-  kRecorder,                         // writes the log; its row is in kRoles
+  kRecorder,                         // writes the log; only kRoles has its row
   kRunner,                           // `fogline run`: starts and ends a run, and computes no step
 };
 #undef FOGLINE_ROLE_VALUE
@@ -131,8 +132,9 @@ inline constexpr std::tuple kGraph{
                               Role::kDriver,
                               {Role::kArbitrator},
                               "acceleration a_H of the human driver, readiness"},
-    // The closed loop computes runs together as long as their HOST_COMMAND has the same effect. If
-    // a role reads one more field, ClosedLoop::CommandsAs() must compare this field.
+    // The closed loop computes runs together as long as their HOST_COMMANDs have the same effect on
+    // the roles. If a role begins to read another field of HOST_COMMAND, ClosedLoop::CommandsAs()
+    // must compare this field, too.
     Channel<arbitration_t>{"HOST_COMMAND",
                            Pace::kStep,
                            Role::kArbitrator,

@@ -33,12 +33,12 @@ constexpr bool Usable(InputState state) {
   return state == InputState::kOk || state == InputState::kStale;
 }
 
-/// An input of an algorithm that also works without this input: the newest message that came in
-/// time, and the state of the input.
+/// An input that may be missing: the newest message that came in time, and the state of the input.
+/// An algorithm that takes a Heard must also work without this input.
 template <class M>
 struct Heard {
   InputState state = InputState::kAwaited;
-  // nullptr until the first message has come. If the state is Usable(), there is a message.
+  // nullptr until the first message has come; never nullptr if the state is Usable().
   const M* newest = nullptr;
 };
 

@@ -1,5 +1,5 @@
-# Completion of command lines in bash, zsh and fish. The scripts ask the programs themselves, so they
-# have no lists of verbs and options.
+# Completion of command lines in bash, zsh and fish. The scripts call the programs to find the
+# words, so the scripts contain no lists of verbs and options.
 set(completing fogline fogline-calibrate fogline-study fogline-web)
 set(plain ${FOGLINE_PROGRAMS})
 list(REMOVE_ITEM plain ${completing})

@@ -1,5 +1,5 @@
-# Corrects the page that help2man makes of a help text of CLI11. Examples keep their lines. Arguments,
-# verbs and exit codes have sections of their own.
+# Corrects the page that help2man makes of a help text of CLI11. Examples keep their lines.
+# Arguments, verbs and exit codes have sections of their own.
 function end_example() { if (example) print ".fi"; example = 0 }
 $0 == ".SS \"Positionals:\"" { print ".SH ARGUMENTS"; next }
 $0 == ".SS \"Subcommands:\"" { print ".SH VERBS"; next }

@@ -28,11 +28,11 @@ function(man_page name see_also program)
   file(REMOVE "${OUT}/see_also")
 endfunction()
 
-# verbs(OUTPUT WORD...): the verbs that may follow `fogline WORD...`.
+# verbs(OUTPUT WORD...): sets OUTPUT to the list of verbs that may follow `fogline WORD...`.
 function(verbs output)
   execute_process(COMMAND "${PROGRAM_FOLDER}/fogline" --complete ${ARGN} "" OUTPUT_VARIABLE lines
     COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")  # a meaning may contain ";"
+  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")  # a ";" in a meaning would split the list
   string(REGEX MATCHALL "[^\n]+" lines "${lines}")
   set(${output} "${lines}" PARENT_SCOPE)
 endfunction()

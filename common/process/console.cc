@@ -29,8 +29,8 @@ constexpr Duration kReaderLimit = milliseconds(5000);
 
 /// While an object of this class exists, two signals do not end or stop the process when this
 /// thread writes. SIGPIPE comes when a pipe has no reader. SIGTTOU comes when a background process
-/// writes to a terminal that forbids this (`stty tostop`). All other writes behave as usual, so
-/// `fogline digest *.lcm | head` ends.
+/// writes to a terminal that forbids this (`stty tostop`). All other writes behave as usual: in
+/// `fogline digest *.lcm | head`, SIGPIPE ends `fogline digest`.
 class WithoutSignals {
  public:
   WithoutSignals() {

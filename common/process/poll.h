@@ -1,4 +1,4 @@
-// Waits for a file or socket with a time limit in nanoseconds. The limit of poll() is in
+// Waits for a file or socket with a time limit in nanoseconds. poll() would allow only whole
 // milliseconds.
 #pragma once
 

@@ -1,4 +1,5 @@
-// Real-time priority of processes and threads (SCHED_FIFO). It needs CAP_SYS_NICE or RLIMIT_RTPRIO.
+// Real-time priority of processes and threads (SCHED_FIFO). The kernel grants it only to a process
+// with CAP_SYS_NICE or a sufficient RLIMIT_RTPRIO.
 #pragma once
 
 #include <sys/types.h>
@@ -11,12 +12,13 @@ namespace fogline {
 bool RunBeforeOthers(int priority);
 
 /// Asks the kernel to run the calling thread before all ordinary threads.
-/// @param with_its_threads whether this also applies to the threads that it will start
-/// @return whether the kernel granted this
+/// @param with_its_threads whether the threads that the calling thread starts later get the same
+///     priority
+/// @return whether the kernel granted the request
 bool RunThreadBeforeOthers(int priority, bool with_its_threads = false);
 
-/// The number of threads of a process of this machine that the kernel runs before all ordinary
-/// threads. 0 if there is no such process.
+/// Counts those threads of a process that the kernel runs before all ordinary threads. The result
+/// is 0 if this machine has no such process.
 int ThreadsBeforeOthers(pid_t process);
 
 }  // namespace fogline

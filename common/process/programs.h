@@ -12,8 +12,9 @@ std::filesystem::path OwnFolder();
 /// Whether this user may execute a file.
 bool IsExecutable(const std::filesystem::path& file);
 
-/// Path of a program in the folders of $PATH, the first one first; "" if none has it. An empty
-/// folder is the folder of the process.
+/// Searches the folders of $PATH in their order for a program of this name. Returns the path of the
+/// first program found; "" if there is none. An empty entry of $PATH means the working folder of
+/// the process.
 std::filesystem::path FindProgram(const std::string& name);
 
 }  // namespace fogline

@@ -20,9 +20,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Draws the bar, but not too often. @param note text after the bar
+  /// Draws the bar, at most ten times a second. @param note text after the bar
   void Show(std::int64_t done, std::string_view note = "");
-  /// Prints a line on stderr, in place of the bar.
+  /// Erases the bar, and prints a line on stderr in its place.
   void Say(std::string_view line);
 
  private:

@@ -5,9 +5,9 @@
 
 namespace fogline {
 
-/// While an object of this class exists, its thread gets no signals. A thread that is started in
-/// this time never gets a signal, even later. So the kernel gives signals to the other threads,
-/// which handle them.
+/// While an object of this class exists, its thread gets no signals. A thread that this thread
+/// starts in the meantime never gets a signal, even later. So the kernel gives signals to the other
+/// threads, which handle them.
 class SignalsBlocked {
  public:
   SignalsBlocked() {

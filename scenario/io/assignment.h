@@ -8,16 +8,17 @@
 
 namespace fogline {
 
-/// A field of a scenario, named by its JSON pointer, which can be set: a number, an integer, a flag
-/// or a choice. The field may lie in an item of a list; the scenario must then have this item.
+/// Sets a field that is a number, an integer, a flag or a choice. A JSON pointer names the field.
+/// If the field lies in an item of a list, the scenario must have this item.
 class FieldAssignment {
  public:
-  /// @throws InputError if the pointer names no such field
+  /// @throws InputError if the pointer names a section, or no field of a scenario
   explicit FieldAssignment(std::string_view pointer);
 
   /// Sets the field without a check of its range. ParseScenario() with an override checks the
   /// range.
-  /// @throws InputError if the field cannot have this value, or its list has no such item
+  /// @throws InputError if the field cannot have this value, if it is a text or a list, or if the
+  ///     scenario lacks the item of the list
   void Set(Scenario& scenario, double number) const;
   /// Sets the field to a value that is written as a text, such as 0.5, true or traded.
   void Set(Scenario& scenario, std::string_view text) const;

@@ -9,7 +9,7 @@
 namespace fogline {
 namespace {
 
-// The segments of a pointer, each with its slash.
+// The segments of a pointer, each with the slash before it.
 std::vector<std::string_view> Segments(std::string_view pointer) {
   std::vector<std::string_view> segments;
   while (!pointer.empty()) {
@@ -28,7 +28,7 @@ std::string WithoutIndices(std::string_view pointer) {
   return out;
 }
 
-// `pattern` with the index of `pointer` at the same depth in place of each *.
+// `pattern`, in which the index of `pointer` at the same depth replaces each *.
 std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
   const std::vector<std::string_view> segments = Segments(pointer);
   std::string out;

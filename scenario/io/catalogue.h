@@ -1,4 +1,5 @@
-// Every field of a scenario by its JSON pointer: for explanations, overrides and suggestions.
+// Finds the fields of a scenario by their JSON pointers, for explanations, overrides and
+// suggestions.
 #pragma once
 
 #include <optional>
@@ -18,14 +19,16 @@ const FieldList& Catalogue();
 const FieldList& ExperimentCatalogue();
 const FieldList& LabCatalogue();
 
-/// Finds the field with this pointer, or returns null. Any index in the pointer finds the one item
-/// of its list. "/" and "" find the whole scenario, which is not in Catalogue().
+/// Finds the field with this pointer, or returns null. Every index in the pointer, such as 7,
+/// stands for the one item that the list has in Catalogue(). "/" and "" find the whole scenario,
+/// which is not in Catalogue().
 const Field* FindField(std::string_view pointer);
 
-/// The longest beginning of `pointer` that names a field or section; at least "/".
+/// The longest beginning of `pointer` that names a field or a section; "/" if no beginning does.
 std::string NearestKnownPointer(std::string_view pointer);
 
-/// Pointer of the first field with this name in any section, except fields in items of lists.
+/// The pointer of the first field with this name, in any section; nothing if there is no such
+/// field. Fields in items of lists are left out.
 std::optional<std::string_view> FindName(std::string_view name);
 
 /// The known pointer that an unknown pointer may mean: a pointer with a similar spelling and the

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxPrinted = 20;
 
-// Finds the lines and columns of ascending offsets in a text, in one pass.
+// Finds the line and the column of offsets in a text. The offsets must come in ascending order, so
+// that one pass over the text is enough.
 class LineCounter {
  public:
   explicit LineCounter(std::string_view text) : text_(text), at_(SkipByteOrderMark(text)) {}

@@ -15,7 +15,7 @@ namespace fogline {
 struct Source {
   std::string name;
   std::string_view text;
-  bool has_lines = true;  // false: only the name says where a mistake is
+  bool has_lines = true;  // false for an override: its name alone says where a mistake is
 };
 
 /// Place in a text: the index of a source, and the offset in bytes in the text of that source.
@@ -34,8 +34,9 @@ class DiagnosticList {
   bool empty() const { return kept_.empty(); }
   bool Has(std::string_view rule) const;
 
-  /// @pre not empty; `sources` has the source of every place
-  /// @param allowed the command that shows the allowed values; "" means the command for a scenario
+  /// @pre the list is not empty, and `sources` has the source of every place
+  /// @param allowed the command that shows the allowed values; "" stands for the command for a
+  ///     scenario (fogline check --explain)
   /// @throws ScenarioError with all mistakes, sorted by their places
   [[noreturn]] void Throw(const std::vector<Source>& sources, std::string_view allowed = "");
 

@@ -20,7 +20,7 @@ struct Diagnostic {
   std::string pointer;  // JSON pointer of the field, such as /arbitrator/threshold
   std::string rule;     // stable name of the broken rule, such as "range" (scenario/README.md)
   std::string message;  // the mistake, the allowed values, and a suggestion
-  std::size_t override_number = 0;  // 1-based, of the override with the mistake; 0 for the file
+  std::size_t override_number = 0;  // 1-based number of the override with the mistake; 0: the file
 };
 
 /// A scenario that breaks rules. what() has one line for each mistake (20 at most), as

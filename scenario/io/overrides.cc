@@ -43,8 +43,9 @@ JsonValue* FindItem(JsonArray& items, std::string_view segment) {
 }
 
 // The value at `pointer`, which names a known field. Adds missing sections of the path. If a list
-// has no such item, the function notes this mistake and returns null. If a section of the path has
-// a value of a wrong type, the function returns null, and ReadScenario() notes this mistake.
+// lacks an item of the path, the function notes this mistake and returns null. If a section of the
+// path has a value of a wrong type, the function returns null, and ReadScenario() notes this
+// mistake.
 JsonValue* Walk(JsonValue& root, std::string_view pointer, Place place, DiagnosticList& mistakes) {
   JsonValue* at = &root;
   std::size_t begin = 0;

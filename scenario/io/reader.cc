@@ -66,8 +66,8 @@ std::vector<std::string_view> KeysOf(const FieldList& fields) {
 // Reads values into fields, and notes each mistake at its pointer.
 class Reader {
  public:
-  /// Where the reader looks for the name that an unknown key may mean: in the whole scenario, or
-  /// only in the same section.
+  /// Where the reader looks for the name that the user may have meant by an unknown key: in the
+  /// whole scenario (kScenario), or only in the same section (kNone).
   enum class Hints { kScenario, kNone };
 
   explicit Reader(DiagnosticList& mistakes, Hints hints = Hints::kScenario)
@@ -278,8 +278,8 @@ void Reader::RefuseUnknownKeys(const JsonObject& object, const std::string& poin
   }
 }
 
-// Reads a whole file: its fields, $schema and version.
-// @param what such as "scenario"
+// Reads a whole file: its fields and $schema. Notes a mistake if `version` is missing.
+// @param what the kind of file with its article, such as "a scenario"
 void ReadRoot(const JsonValue& root, const FieldList& fields, std::string_view what,
               Reader::Hints hints, DiagnosticList& mistakes) {
   const auto* object = root.As<JsonObject>();
@@ -289,7 +289,7 @@ void ReadRoot(const JsonValue& root, const FieldList& fields, std::string_view w
   }
   Reader reader(mistakes, hints);
   constexpr std::string_view kSchema = "$schema";
-  std::string schema;  // for editors, not part of the experiment
+  std::string schema;  // only editors use it; it is not part of the experiment
   if (const JsonMember* member = FindMember(*object, kSchema)) {
     reader.Read(member->value, JoinPointer("", kSchema), &schema);
   }

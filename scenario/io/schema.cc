@@ -123,7 +123,7 @@ struct FieldSchema {
   }
 };
 
-// Path of a field's schema in the schema of the scenario.
+// The path of a field's schema within the schema of its file.
 Json::json_pointer PlaceOf(std::string_view pointer) {
   std::string place;
   while (!pointer.empty()) {
@@ -140,8 +140,8 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {
-    // JSON schema applies minLength only to texts, and minItems only to lists. So both may stand
-    // here for a field of either type.
+    // JSON schema applies minLength only to texts, and minItems only to lists. So both keywords are
+    // given here, and only the keyword for the field's type has an effect.
     any_of.push_back(
         {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
   }

@@ -1,4 +1,4 @@
-// The section of a scenario for an advanced emergency braking system, of the host or of a following
+// The section of a scenario for the advanced emergency braking (AEB) of the host, or of a following
 // car.
 #pragma once
 

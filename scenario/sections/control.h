@@ -103,7 +103,7 @@ struct DriverSection {
   bool operator==(const DriverSection&) const = default;
 };
 
-/// How a measure's score becomes the DoC.
+/// The formula that turns the score of a measure of conflict into the degree of conflict (DoC).
 enum class MeasureScale : std::uint8_t { kLogistic, kProbability };
 constexpr auto ChoicesOf(MeasureScale) {
   return std::to_array<Choice>(
@@ -126,8 +126,9 @@ constexpr auto ChoicesOf(MissingLidar) {
        {"conflict", "counts as a difference of missing_conflict_m"}});
 }
 
-/// Parameters of the arbitrator of Sourav & Cheng 2024. With measure `doc`, DoC = 1 / (1 +
-/// exp(-doc_slope_per_m (z - doc_centre_m))), with the conflict z over the window.
+/// Parameters of the arbitrator of Sourav & Cheng 2024. With measure `doc`, the degree of conflict
+/// is DoC = 1 / (1 + exp(-doc_slope_per_m (z - doc_centre_m))). Here z is the conflict, averaged
+/// over a window of window_steps steps.
 struct ArbitratorSection {
   FOGLINE_FIELD(Policy, policy, Policy::kTraded, "Rule that decides who drives the host.");
   FOGLINE_FIELD(double, threshold, 0.5, {0, 1}, "DoC_th: below it the automation drives.",

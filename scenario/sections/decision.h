@@ -1,6 +1,6 @@
 // The policies, the measures of conflict and the measures of blame that a scenario may choose.
-// services/decision has a table for each of these three lists. The compiler checks that list and
-// table have the same names in the same order.
+// services/decision has a table for each of these three lists. The compiler checks that each list
+// and its table have the same names in the same order.
 #pragma once
 
 #include <array>

@@ -133,9 +133,9 @@ struct AdaptiveSection {
 /// unready_cost (1 - A) + blind_cost min(1, near_m / MOR) is the expected cost of a human who
 /// drives. C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) is the
 /// expected cost of an automation that uses a wrong distance. A is the driver's readiness, MOR the
-/// visibility, and TTC the time to collision. P(conflict) is the DoC. With the paper's slope, the
-/// DoC rises steeply at its centre. With measure lidar_modes and measure_scale probability, the DoC
-/// is a posterior probability.
+/// visibility, and TTC the time to collision. The policy uses the DoC as P(conflict). With measure
+/// lidar_modes and measure_scale probability, the DoC is a posterior probability. With the paper's
+/// measure, the DoC is not a probability: it is only a steep function of the conflict.
 struct BayesSection {
   FOGLINE_FIELD(
       double, human_cost, 1.0, {1e-6, 1e6}, "Cost of any human engagement.",
@@ -164,9 +164,9 @@ struct BayesSection {
 };
 
 /// Policy availability: like traded, but the driver gets authority only if a take-over is possible
-/// in time. The take-over time must end before the follower has to brake harder than comfort_mps2,
-/// and before horizon_s. The policy uses the 95th percentile of the take-over time, and adds time
-/// if the driver's readiness is below 1. If the take-over would come too late, the automation
+/// in time. The take-over must end before the follower has to brake harder than comfort_mps2, and
+/// within horizon_s. The policy uses the 95th percentile of the take-over time, and adds time if
+/// the driver's readiness is below 1. If the take-over would come too late, the automation
 /// continues to drive. Whenever the automation drives, it does not use the sensor that is to blame,
 /// as with policy isolate.
 struct AvailabilitySection {
@@ -184,7 +184,7 @@ struct AvailabilitySection {
   bool operator==(const AvailabilitySection&) const = default;
 };
 
-/// Policy blend: both drive, the human in proportion to the conflict:
+/// Policy blend: both sides drive. The authority of the human, lambda_H, grows with the conflict:
 /// lambda_H = clip((DoC - from) / width, 0, 1).
 struct BlendSection {
   FOGLINE_FIELD(double, from, 0.2, {0, 1}, "DoC up to which the automation drives alone.",

@@ -13,7 +13,7 @@
 //   double                      NumberSpec, meaning, source of the default
 //   std::int64_t                IntegerSpec, meaning, source of the default
 //   bool, std::string, an enum  meaning
-//   a section                   meaning; a NeedSpec if some files must have it
+//   a section                   meaning; also a NeedSpec if some files must have the section
 //   a std::vector of double     ListSpec, NumberSpec, meaning, source
 //   a std::vector of texts      ListSpec, meaning
 //   a std::vector of sections   ListSpec, meaning
@@ -29,14 +29,15 @@
 
 namespace fogline {
 
-/// A real number: closed range, and unit ("" if none).
+/// The range of a real number and its unit ("" if it has none). The limits belong to the range.
 struct NumberSpec {
   double min;
   double max;
   std::string_view unit = "";
 };
 
-/// An integer; in the file 3 and 3.0 are the same.
+/// The range of an integer and its unit. The limits belong to the range. In the file, 3 and 3.0 are
+/// the same integer.
 struct IntegerSpec {
   std::int64_t min;
   std::int64_t max;
@@ -53,8 +54,8 @@ struct ListSpec {
 /// characters (C0, DEL, C1), so it can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// If the field `choice` beside a section has the value `value`, the file must have the section. At
-/// least one of the section's `fields` (texts or lists) must then not be empty.
+/// Says when a file must have a section: if the field `choice` beside the section has the value
+/// `value`. At least one of the section's `fields` (texts or lists) must then not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;

@@ -184,7 +184,8 @@ std::optional<Field> FieldAt(Scenario& scenario, std::string_view pointer) {
     const auto field = std::find_if(fields.begin(), fields.end(), on_the_way);
     if (field == fields.end()) return std::nullopt;
     if (field->pointer == pointer) return std::move(*field);
-    if (const auto* numbers = field->As<NumbersField>()) {  // faster for a million numbers
+    // For a list of a million numbers, this branch is faster than Contents().
+    if (const auto* numbers = field->As<NumbersField>()) {
       const auto index = ListIndex(pointer.substr(field->pointer.size() + 1));
       if (!index || *index >= numbers->values->size()) return std::nullopt;
       return NumberAt(*field, *index);

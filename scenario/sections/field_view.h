@@ -32,7 +32,7 @@ struct IntegerField {
   IntegerSpec spec;
 };
 
-/// A value of an enumeration, as an index of `names`.
+/// A value of an enumeration. `get` and `set` use its index in `names`.
 struct ChoiceField {
   std::span<const std::string_view> names;
   std::span<const std::string_view> docs;
@@ -55,13 +55,13 @@ struct TextsField {
 /// A list of sections.
 struct ListField {
   ListSpec list;
-  std::function<void(std::size_t)> reset;  // makes this number of items, with default values
+  std::function<void(std::size_t)> reset;  // makes a list of this size, with default values
   std::function<FieldList(const std::string& pointer)> items;
 };
 
 /// A section, or an item of a list of sections.
 struct SectionField {
-  NeedSpec need;  // need.choice is "" if the section is optional in every file
+  NeedSpec need;  // need.choice is "" if no file must have the section
   std::function<FieldList(const std::string& pointer)> fields;
 };
 
@@ -75,22 +75,23 @@ struct Field {
                TextsField, ListField, SectionField>
       value;
 
-  /// The value if it is a T, or null.
+  /// The value if it is a T; otherwise null.
   template <class T>
   const T* As() const {
     return std::get_if<T>(&value);
   }
-  /// The fields of a section or the items of a list; nothing for other fields.
+  /// The fields of a section, or the items of a list. The result is empty for other fields.
   FieldList Contents() const;
 };
 
-/// The fields of the scenario itself, in their order. A field stays valid until the scenario is
-/// destroyed or a list of the scenario changes its size.
+/// The fields at the top level of the scenario, in their order. A field stays valid until the
+/// scenario is destroyed or a list of the scenario changes its size.
 FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
 
-/// The fields of an experiment or a laboratory itself, in the same way as for a scenario.
+/// The fields at the top level of an experiment, or of a laboratory, in the same way as for a
+/// scenario.
 FieldList FieldsOf(ExperimentPlan& plan);
 FieldList FieldsOf(LabPlan& plan);
 

@@ -57,7 +57,8 @@ struct FogSightParameters {
   bool operator==(const FogSightParameters&) const = default;
 };
 
-/// Human Driver Model: errors with a memory, reaction time, anticipation.
+/// Parameters of the Human Driver Model: errors that change slowly, reaction time, and
+/// anticipation.
 struct HumanParameters {
   FOGLINE_FIELD(double, reaction_time_s, 0.8, {0, 3, "s"}, "Reaction time T_r, at most 254 steps.",
                 "Treiber, Kesting & Helbing 2006 study 0.5 to 1.1; here the middle");

@@ -106,7 +106,7 @@ struct RecordedSection {
   bool operator==(const RecordedSection&) const = default;
 };
 
-/// Largest number of lines of a text for SUMO.
+/// Largest number of lines of each of the two texts for SUMO: network and routes.
 inline constexpr std::int64_t kMaxSumoLines = 200'000;
 
 /// A traffic simulation by SUMO, with the host in it. LoadScenario() reads the two files and fills

@@ -1,5 +1,5 @@
-// The section of a scenario for a driver who must first be asked to take over: request, take-over
-// time, minimal risk manoeuvre.
+// The section of a scenario for a driver who must be asked before a take-over. Its fields describe
+// the request, the take-over time and the minimal risk manoeuvre.
 #pragma once
 
 #include <array>

@@ -41,9 +41,9 @@ struct GradePoint {
   bool operator==(const GradePoint&) const = default;
 };
 
-/// The road under all cars. The road has no effect on a point mass. If host or following cars have
-/// tyres (model longitudinal), the road also limits the braking of the preceding car
-/// (services/world).
+/// The road under all cars. The road has no effect on a car whose model is a point mass. If host or
+/// following cars have tyres (model longitudinal), the road also limits the braking of the
+/// preceding car (services/world).
 struct RoadSection {
   FOGLINE_FIELD(Surface, surface, Surface::kDry,
                 "Surface of the road, which sets the friction of the tyres. It also limits the "

@@ -20,7 +20,7 @@ class Acc {
   explicit Acc(const Scenario& scenario);
 
   /// Resets the object to the state of a new Acc(scenario). Restart() is cheaper than a new object
-  /// if the ACC's parameters are equal.
+  /// if the ACC's parameters are unchanged.
   void Restart(const Scenario& scenario);
 
   const accel_command_t& Step(const ego_t& ego, const track_t& track);

@@ -93,11 +93,12 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
 // The value of u before this step, from which the rate limit of u starts. If the car followed its
 // command, this value is the u of the controller's last step. Otherwise the value is the u that
 // would keep the car's acceleration. The value is clamped to the limits of u, because the driver
-// may brake harder than the automation may. A longitudinal vehicle never follows its command
-// exactly. For such a vehicle, the value is the u of the last step, but limited to values near the
-// u that would keep the acceleration. The two u differ by at most T_e jerk_max / K_e. While u
-// changes at the jerk limit, the model's engine lags by this difference. Because of this limit, u
-// cannot drift away while the human drives.
+// may brake harder than the automation may.
+//
+// A longitudinal vehicle never follows its command exactly. For such a vehicle, the value is the u
+// of the last step, but limited: its distance from the u that would keep the acceleration is at
+// most T_e jerk_max / K_e. While u changes at the jerk limit, the model's engine lags behind u by
+// this distance. Because of this limit, u cannot drift away while the human drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;
   double control = holding;

@@ -25,11 +25,13 @@ namespace fogline::acc {
 ///
 /// A point mass applies a command without delay, so its command is the model's acceleration one
 /// step ahead. The command starts from the car's actual acceleration, so the command is continuous
-/// after a take-over. A longitudinal vehicle has its own lag, in place of the model's lag. The
-/// command of this vehicle is -K_e u, the steady acceleration that the control u causes. Before
-/// each step, the difference between the last command and the vehicle's acceleration is limited to
-/// T_e max_jerk_mps3. While the command changes at the jerk limit, the acceleration of the model's
-/// engine lags behind the command by this difference.
+/// after a take-over.
+///
+/// A longitudinal vehicle has its own lag, in place of the model's lag. The command of this vehicle
+/// is -K_e u, the steady acceleration that the control u causes. Before each step, the difference
+/// between the last command and the vehicle's acceleration is limited to T_e max_jerk_mps3. The
+/// reason for this value: while a command changes at the jerk limit, the acceleration of the
+/// model's engine lags behind the command by T_e max_jerk_mps3.
 class AccController {
  public:
   struct Input {

@@ -133,7 +133,7 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
   const Reach reach = ReachOf(now);
   const double settled = SettledSpeed(now);
   const double preceding_mps = now.speed_mps + now.state(kDeltaV);
-  double previous = now.previous_control;  // u before u_0; u before u_1, ... is an unknown, see C
+  double previous = now.previous_control;  // u_{-1} for step 0; for later steps, C has u_{j-1}
   double control = now.previous_control;   // u of the fall-back plan
   double fallback = settled;
   Eigen::Vector3d free = now.state;  // the state if every u were 0

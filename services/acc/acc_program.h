@@ -89,8 +89,8 @@ class AccProgram {
   double FallbackControl(double previous_control) const;
 
  private:
-  // Whether a plan within the limits of u can reach the limits of the speed, or the limit of the
-  // gap.
+  // Whether a plan within the limits of u can reach the limits of the speed (`speed`), and whether
+  // it can reach the limit of the gap (`gap`).
   struct Reach {
     bool speed;
     bool gap;

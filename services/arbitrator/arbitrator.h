@@ -102,14 +102,14 @@ class Arbitrator {
   ConflictMeter meter_;
   policies::Rule rule_;
   bool shares_;
-  std::unique_ptr<policies::EngagementPolicy> policy_;  // null for a simple rule
+  std::unique_ptr<policies::EngagementPolicy> policy_;  // null unless rule_ is kOwn
   std::optional<FusionRecovery> recovery_;              // only with hand_back fusion
   RequestDebouncer debouncer_;
   Transfer transfer_;
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only for a driver who must be asked
   std::optional<models::Aeb> aeb_;                // only for a host that has emergency braking
-  double max_track_variance_m2_;                  // emergency braking ignores a track above this
+  double max_track_variance_m2_;                  // largest variance that emergency braking accepts
   double easing_per_step_;                        // m/s2; decrease of eased_mps2_ per step
   double eased_mps2_ = 0;                         // limit of the automation's offer after a request
   bool automation_there_ = true;

@@ -13,9 +13,9 @@
 namespace fogline::arbitrator {
 
 /// DoC = 1/(1 + exp(-slope (x - centre))). x depends on the scenario's measure. With measure `doc`,
-/// x is z as in the paper (services/decision/conflict/over_time/doc.h). With another measure, x is
-/// the measure's score (services/decision/conflict/conflict_measures.cc). If measure_scale is
-/// `probability`, the DoC is not this function of x, but the score itself.
+/// x is the windowed conflict z of the paper (services/decision/conflict/over_time/doc.h). With
+/// another measure, x is the measure's score (services/decision/conflict/conflict_measures.cc). If
+/// measure_scale is `probability`, the DoC is not this function of x, but the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is `probability`, but the measure's score is not a

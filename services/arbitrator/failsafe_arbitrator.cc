@@ -7,9 +7,10 @@
 namespace fogline::arbitrator {
 namespace {
 
-// Availability of the automation: the worst state of three inputs. These are its command, the track
-// from which the command is computed, and values of both sensors in pairs of one step. Without
-// pairs there is no Degree of Conflict, so the arbitrator cannot judge the automation.
+// Availability of the automation: the worst of five availabilities. These belong to its command, to
+// the track from which the command is computed, to radar, to LiDAR, and to the pairs of radar and
+// LiDAR values of one step. Without pairs there is no Degree of Conflict, so the arbitrator cannot
+// judge the automation.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});

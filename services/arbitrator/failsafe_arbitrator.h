@@ -69,7 +69,7 @@ class FailsafeArbitrator {
   models::MinimalRisk minimal_risk_;
   bool person_;  // whether a person drives
   bool person_came_ = false;
-  std::int64_t person_due_step_;  // a person who has not come by this step is gone
+  std::int64_t person_due_step_;  // a person who has not come by this step counts as gone
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
   // Acceleration and mode of the last decision, before emergency braking.

@@ -24,8 +24,8 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// The regular decision: the human would drive (kDisputed), or the automation (kCalm). The values
-/// are bits, too.
+/// The regular decision: whether it wants the automation (kCalm) or the human (kDisputed) to drive.
+/// The values are bits, so that a row of the table can name both (kAnyConflict).
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {

@@ -13,9 +13,11 @@ namespace fogline::arbitrator {
 ///
 ///     none  the human is wanted while DoC >= threshold
 ///     band  the human is wanted from DoC >= threshold until
-///           DoC < threshold - min(band, threshold/2):
-///           so a DoC of 0 always gives the automation the authority, also if the threshold changes
-///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
+///           DoC < threshold - min(band, threshold/2);
+///           this limit is at least threshold/2: so, if the threshold is above 0, the human is
+///           never wanted at a DoC of 0, also if the threshold changes
+///     sprt  Wald's sequential probability ratio test (1945):
+///           in each step, L grows by logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           after every decision, a new test begins from L = 0
@@ -46,7 +48,8 @@ class RequestDebouncer {
   double evidence() const { return evidence_; }
 
  private:
-  /// Takes over the result of a firm request, which is a decision like any other.
+  /// Follows a firm request without delay. The test of hysteresis sprt begins again from L = 0. If
+  /// the request changes the wanted side, min_dwell_s begins again, too.
   double Follow(double lambda_human);
   double PutOff(const policies::EngagementRequest& request, double doc, bool recovered);
   bool HumanByHysteresis(const policies::EngagementRequest& request, double doc);

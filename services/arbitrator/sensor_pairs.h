@@ -15,8 +15,8 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair of values, and its state (OK, STALE, ...). HealthSection gives the limits; here
-/// they count steps instead of periods of time.
+/// The newest pair of values, and its state (OK, STALE, ...). HealthSection gives the limits for
+/// the age of an input in periods. Here the age of a pair is counted in steps.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);

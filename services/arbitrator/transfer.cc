@@ -73,7 +73,8 @@ double Transfer::AuthorityTowards(double wanted) {
     return progress_ = Towards(progress_, wanted, progress_per_step_);
   }
   if (section_.profile != TransferProfile::kSigmoid) return wanted;
-  // At 0 and 1 the target is the wanted authority itself, because the logarithm would round.
+  // At 0 and 1 the target is the wanted authority itself, because the logarithm in InverseSigmoid()
+  // would give a rounded value.
   const double target = wanted == 0 || wanted == 1 ? wanted : InverseSigmoid(wanted);
   progress_ = Towards(progress_, target, progress_per_step_);
   if (progress_ == target) return wanted;

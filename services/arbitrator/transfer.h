@@ -12,15 +12,15 @@ namespace fogline::arbitrator {
 /// a = lambda_H a_H + lambda_A a_A. Profiles:
 ///
 ///     step          lambda_H is the wanted authority without delay (as in the paper)
-///     linear        lambda_H moves by at most step/duration
-///     sigmoid       lambda_H = S(p), p moves by at most step/duration,
+///     linear        lambda_H moves by at most step_s/duration_s in each step
+///     sigmoid       lambda_H = S(p), p moves by at most step_s/duration_s in each step,
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
 ///     jerk_limited  like step, but with a limited jerk of the command until the command reaches a
 ///
-/// With every profile, the gate limits the command itself for gate_s after the beginning of a
-/// transfer. The gate also limits the change of the command until the command reaches a. A transfer
-/// begins when the wanted authority passes kMainAuthority. If a is below -yield_mps2, both limits
-/// end immediately.
+/// The gate is an option for every profile. It limits the command itself for gate_s after the
+/// beginning of a transfer. It also limits the change of the command until the command reaches a. A
+/// transfer begins when the wanted authority passes kMainAuthority. If a is below -yield_mps2, all
+/// limits of the command end immediately.
 ///
 /// If lambda_H is 0 or 1 and no limit applies, the command is the offer of the side with authority,
 /// bit by bit. services/arbitrator/README.md describes the return to the automation.

@@ -152,10 +152,11 @@ class ClosedLoop {
   /// Whether the last HOST_COMMANDs of this loop and of `other` have the same effect on the other
   /// roles.
   bool CommandsAs(const ClosedLoop& other) const;
-  /// Copies the state of all other roles, and the messages of the step. ComputeAfterArbitrator()
-  /// comes next. @pre ArbitrateFor(shared) was called in this step
+  /// Copies from `shared` the state of all roles except the arbitrator, and the messages of the
+  /// step. Call ComputeAfterArbitrator() next. @pre ArbitrateFor(shared) was called in this step
   void LeaveFrom(const ClosedLoop& shared);
-  /// The step of `shared` with the message of this loop's arbitrator.
+  /// Calls `visit` with the messages of `shared`, except that HOST_COMMAND is the message of this
+  /// loop's arbitrator.
   template <class Visit>
   void VisitStepOf(const ClosedLoop& shared, Visit&& visit) const {
     Messages messages = shared.messages_;
@@ -210,7 +211,7 @@ class ClosedLoop {
   Roles::Type roles_;
   Messages messages_;                       // newest messages of the run
   const arbitration_t* command_ = nullptr;  // newest message of the arbitrator
-  StepMessages copies_;                     // messages of the step in which the run left another
+  StepMessages copies_;                     // messages that LeaveFrom() has copied
 };
 
 /// A ClosedLoop for one run after another, with the same or other scenarios. Only one thread may
@@ -218,7 +219,7 @@ class ClosedLoop {
 class ReusedLoop {
  public:
   /// Computes one run; ClosedLoop::Run() describes `visit`. @throws the exceptions of ClosedLoop's
-  /// constructor
+  /// constructor and of ClosedLoop::Run()
   template <class Visit>
   void Run(const Scenario& scenario, Visit&& visit) {
     if (loop_) {

@@ -51,8 +51,10 @@ class SharedRuns {
   void Prepare(std::span<const Scenario> scenarios, const std::vector<Group>& groups);
   /// The loop that computes the steps of the group.
   ClosedLoop& Front(const Group& group) { return loops_[group.front()]; }
-  /// Computes the next step of the group up to the arbitrators. Moves the runs whose arbitrators do
-  /// not command what the front's arbitrator commands from `group` to new groups in `left`.
+  /// Computes the next step of the group up to the arbitrators. If the command of a run's
+  /// arbitrator does not have the same effect as the command of the front's arbitrator, the run is
+  /// moved from `group` to a new group in `left`. Runs whose commands have the same effect are
+  /// moved to the same new group.
   void Decide(Group& group, std::vector<Group>& left);
 
   /// Computes the rest of the runs of a group, and of the groups that have left it.

@@ -40,8 +40,8 @@ class Driver {
   void SetLiveInput(const driver_input_t* input);
 
   /// The acceleration that the driver offers. Call Step() in the order of steps. The result depends
-  /// on earlier steps only with switch misjudges or loses_awareness. The result is valid until the
-  /// next call.
+  /// on earlier steps only if the switch misjudges or loses_awareness is on. The result is valid
+  /// until the next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:

@@ -21,7 +21,7 @@ class AccDriver {
         aeb_(AebOf(scenario.followers)) {}
 
   /// Resets the object to the state of a new AccDriver(scenario). Restart() is cheaper than a new
-  /// object if the ACC's parameters are equal.
+  /// object if the ACC's parameters are unchanged.
   /// @throws the exceptions of the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);

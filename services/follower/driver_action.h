@@ -1,4 +1,5 @@
-// What every driver of a following car has.
+// The action of a driver of a following car, and the emergency braking of this car. Every kind of
+// driver uses both.
 #pragma once
 
 #include <optional>

@@ -27,7 +27,7 @@ class Follower {
   explicit Follower(const Scenario& scenario) { Restart(scenario); }
 
   /// Resets the object to the state of a new Follower(scenario). Restart() is cheaper than a new
-  /// object if an ACC's parameters are equal.
+  /// object if the parameters of the ACCs are unchanged.
   /// @throws the exceptions of the constructor; Restart() must then succeed before the next Step()
   void Restart(const Scenario& scenario);
 

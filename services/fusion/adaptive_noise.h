@@ -22,8 +22,9 @@ struct CorrectionTrace {
 ///     residual    R <- max(R_0, a R + (1 - a) (e^2 + H P+ H'))       Mohamed & Schwarz 1999;
 ///                                                                    Akhlaghi, Zhou & Huang 2017
 ///
-/// If the R of the filter is right, both terms in brackets have the mean R. The variance of d is S
-/// = H P- H' + R, the variance of e is R^2 / S, and H P+ H' is R - R^2 / S.
+/// If the R of the filter is right, both terms that are multiplied by (1 - a) have the mean R. The
+/// reason is that the variance of d is S = H P- H' + R, the variance of e is R^2 / S, and H P+ H'
+/// is R - R^2 / S.
 ///
 /// R never falls below the assumed variance R_0, for three reasons. First, the term of rule
 /// `innovation` may be negative. Second, a wrong sensor with a steady error shifts the estimate

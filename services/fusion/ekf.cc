@@ -5,7 +5,7 @@
 namespace fogline::fusion {
 namespace {
 
-/// Whether both are equal to the last bit, so that every result of one is that of the other.
+/// Whether both are equal to the last bit. Then every computation has the same result with both.
 bool AreSame(const Ekf::Covariance& a, const Ekf::Covariance& b) {
   return std::memcmp(a.data(), b.data(), sizeof a) == 0;
 }
@@ -49,7 +49,7 @@ void Ekf::Start(const State& state, const Covariance& covariance) {
 }
 
 // F, the matrix of the prediction in ekf.h, has ones on its diagonal and zeros below it. The
-// function leaves out these factors. The sums have the order a + (b + c), as in Correct().
+// function leaves out these factors. The sums have the order a + (b + c), as in CorrectByBoth().
 void Ekf::Predict(double host_acceleration_mps2) {
   const double t = step_s_;
   const double half_t2 = t * t / 2;

@@ -51,8 +51,8 @@ class Ekf {
   const Covariance& covariance() const { return steps_[step_].updates[now_].covariance; }
 
  private:
-  /// What a prediction or a correction makes of the covariance. The gain is that of a correction,
-  /// and depends on the covariance, too.
+  /// The covariance after a prediction or a correction. For a correction, the object also has the
+  /// value's Jacobian and noise variance, and the gain, which depends on the covariance, too.
   struct Update {
     Jacobian jacobian = Jacobian::Zero();
     double noise_variance = 0;
@@ -63,18 +63,19 @@ class Ekf {
   struct StepUpdates {
     bool predicted = false;                // whether the first update is a prediction
     Covariance from = Covariance::Zero();  // the covariance before this prediction
-    std::size_t known = 1;  // number of updates of which each begins with the result of the last
+    std::size_t known = 1;  // number of valid updates; each continues the update before it
     std::array<Update, 4> updates;
   };
 
-  // Correct() for a value that depends on one state alone, with the derivative `slope`.
+  // Computes the update of Correct() for a value that depends only on state kState, with the
+  // derivative `slope`.
   template <int kState>
   static void CorrectBy(double slope, const Covariance& before, Update& update);
-  // Correct() for any Jacobian.
+  // Computes the update of Correct() for any Jacobian.
   static void CorrectByBoth(const Covariance& before, Update& update);
   /// The kept step whose prediction begins with this covariance. Null if no kept step does so.
   const StepUpdates* StepFrom(const Covariance& covariance) const;
-  /// The update for a value with this Jacobian and noise.
+  /// Goes on to the update for a value with this Jacobian and noise, and returns it.
   const Update& NextUpdate(const Jacobian& jacobian, double noise_variance);
 
   double step_s_;                  // T
@@ -82,8 +83,9 @@ class Ekf {
   Eigen::Matrix3d process_noise_;  // Q
   State state_ = State::Zero();
   // The covariance depends on the Jacobians and the noise variances, and not on the measured values
-  // themselves. If these are the same in each step, it converges to the last bit, or to a short
-  // cycle. So the updates of the last steps are kept, and are used again.
+  // themselves. If Jacobians and noise variances are the same in each step, the covariance becomes
+  // constant to the last bit, or repeats a short cycle. So the updates of the last steps are kept,
+  // and are used again.
   std::array<StepUpdates, 8> steps_;
   std::size_t step_ = 0;  // place of the present step in steps_
   std::size_t now_ = 0;   // place of the latest update in the present step

@@ -44,8 +44,8 @@ class Fusion {
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Call Step() once per step, in the order of steps, beginning with the
-  /// first step. `ego` has the host's acceleration during the step that ended here. The result is
-  /// valid until the next call.
+  /// first step. `ego` has the host's acceleration from the previous step to this step. The result
+  /// is valid until the next call.
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
  private:
@@ -72,7 +72,7 @@ class Fusion {
   void CorrectByLidar(const lidar_t& lidar);
   Expectation Expect(Value value) const;
   void Correct(Value value, double measured);
-  /// Usage of a value (see track_t), if gate or policy may refuse values.
+  /// The usage of a value (see track_t). Called only if gate or policy may refuse values.
   std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);

@@ -18,7 +18,7 @@ namespace fogline::fusion {
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {
-    if (lateral_offset_m == 0) {  // gives the same values without a root and divisions
+    if (lateral_offset_m == 0) {  // same values as below, but without a root and divisions
       if (std::abs(distance_m) >= kTouching_m) range_m_ = distance_m;
       return;
     }

@@ -28,9 +28,9 @@ namespace fogline::lidar {
 /// On each beam the echo powers of target and fog are lognormal and independent. The stronger of
 /// these two echoes is the beam's echo if its power exceeds the detection threshold. The fog's echo
 /// lies behind r* (fog_beam.h) by fog_range_scale_m times a random number with the distribution
-/// Beta(2, 20), but never behind the target. At least half of the beams must have an echo. So a
-/// single beam and the LiDAR have the same range at which they detect with probability 1/2, for any
-/// number of beams. A minority of the beams cannot determine the result.
+/// Beta(2, 20), but never behind the target. At least half of the beams must have an echo. So, for
+/// any odd number of beams, the LiDAR detects with probability 1/2 at the same range at which a
+/// single beam does so. A minority of the beams cannot determine the result.
 class Lidar {
  public:
   /// Indices of the random numbers of stream kLidar within a step.
@@ -45,8 +45,8 @@ class Lidar {
   /// @throw InputError if the shares of fog model modes add up to more than 1
   explicit Lidar(const Scenario& scenario);
 
-  /// Resets the object to the state of a new Lidar(scenario). Restart() is cheaper than a new
-  /// object if the seed is the same.
+  /// Resets the object to the state of a new Lidar(scenario). If the seed is unchanged, the object
+  /// may keep the random numbers of its noise. The next run is then cheaper than with a new object.
   void Restart(const Scenario& scenario);
 
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,

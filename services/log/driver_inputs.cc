@@ -11,8 +11,8 @@ void ForEachDriverInput(const std::filesystem::path& log, std::int64_t run_id,
   EventLogReader reader(log);
   while (const auto event = reader.Next()) {
     if (event->channel != ChannelOf<driver_input_t>().name) continue;
-    // lcm-logger writes signed messages with their signatures. The type of a message does not cover
-    // its signature, so the signature is removed before decoding.
+    // lcm-logger writes signed messages with their signatures. The message types have no field for
+    // the signature, so the signature is removed before decoding.
     const bool is_signed = runtime::LooksSigned(event->data);
     driver_input_t input{};
     const auto wrong =

@@ -42,9 +42,9 @@ struct WrittenLog {
 };
 
 /// Size, in bytes, of the last part of a log. This part contains everything after the last complete
-/// step. A killed recorder leaves at most kRingSteps incomplete steps and a torn event in this
-/// part, and has not reported them. The 128 KiB of each channel have space for 87 of its largest
-/// messages.
+/// step: a killed recorder leaves at most kRingSteps (64) incomplete steps and a torn event, and
+/// has not reported them. The part has 128 KiB for each channel. This is space for 87 messages of
+/// the largest size.
 inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.

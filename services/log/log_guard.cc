@@ -31,8 +31,8 @@ bool IsInVain(const std::filesystem::path& log) {
   }
 }
 
-/// The name that the older log in `place` gets while a run replaces it. A later run finds the older
-/// log by this name. @param place without symbolic links
+/// The name that the older log gets while a run writes a new log in its place. A later run finds
+/// the older log by this name. @param place path of the log, without symbolic links
 std::filesystem::path OlderOf(const std::filesystem::path& place) {
   return place.parent_path() / (".fogline-older-" + place.filename().string());
 }

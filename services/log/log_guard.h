@@ -55,8 +55,8 @@ class LogGuard {
 std::string TakeBackOlder(const std::filesystem::path& log, std::string_view option,
                           Duration patience = Duration::zero());
 
-/// Whether a log contains more than a scenario and a seal. @throws InputError if the file is not an
-/// event log
+/// Whether a log contains more than a scenario, a graph and a seal. @throws InputError if the file
+/// is not an event log
 bool HasSteps(const std::filesystem::path& log);
 
 }  // namespace fogline::log

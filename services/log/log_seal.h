@@ -24,7 +24,7 @@ struct LogSeal {
   bool whole = false;               // whether the event itself is unchanged
   log_seal_t says{};                // the contents of the event, if it is whole
   bool copied = false;              // whether the log is a copy that was played and recorded again
-  LogHead before{};                 // the log before the event
+  LogHead before{};                 // the part of the log before this event
   std::vector<std::uint8_t> event;  // the event's data, with the signature if there is one
 };
 

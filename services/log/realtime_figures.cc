@@ -7,9 +7,10 @@
 namespace fogline::log {
 namespace {
 
-// The last steps are kept, because in the log a STATUS may come after steps that are later than the
-// step that it names. A role that computes no step names the same step for a long time. If this
-// step is not kept any more, the number of lost messages is a lower bound.
+// The largest number of steps that are kept. The last steps are needed because, in the log, a
+// STATUS may come after steps that are later than the step that the STATUS names. A role that
+// computes no step names the same step for a long time. After more than kKeptSteps further steps,
+// the number of its lost messages is only a lower bound.
 constexpr std::size_t kKeptSteps = 1024;
 
 }  // namespace
@@ -45,7 +46,8 @@ void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
   due_.erase(due_.begin(), end);
 }
 
-// The step of the STATUS and all steps before it were added, and `after` later steps.
+// Called after AddStep() for the step of the STATUS. `after` is the number of later steps that were
+// also added.
 void RealtimeAccumulator::Check(Process& process) {
   process.is_checked = true;
   const std::int64_t after = steps_ - 1 - process.status.header.step;

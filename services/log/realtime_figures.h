@@ -35,11 +35,12 @@ struct RealtimeFigures {
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
-  // The channels of these messages, apart from messages before the first TRUTH of the log. The set
-  // also has each channel that lacks a message of which no STATUS says whether it was published.
-  // This is the case if the log has no STATUS of the producer. In a log without a seal, this is
-  // also the case if the message is of a step after the last STATUS of the producer, or if several
-  // processes have been the producer.
+  // The channels that lack a published message, or may lack one. Messages before the first TRUTH of
+  // the log do not count. A channel lacks a published message if STATUS shows this. A channel may
+  // lack a published message if a message is missing, and no STATUS says whether it was published:
+  // - The log has no STATUS of the producer.
+  // - The log has no seal, and the message is of a step after the last STATUS of the producer.
+  // - The log has no seal, and several processes have been the producer.
   runtime::ChannelSet unlogged_channels;
   // Whether the log has a STATUS of the world. All figures except `speed` and `missed_messages`
   // come from STATUS, so without it they are unknown.
@@ -121,7 +122,7 @@ class RealtimeAccumulator {
   // start of the process.
   std::map<std::pair<std::string, std::int64_t>, Process> last_;
   std::deque<runtime::ChannelSet> kept_;       // the channels that each of the last steps has
-  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS; this step comes later
+  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS, which is not yet added
 };
 
 }  // namespace fogline::log

@@ -118,8 +118,8 @@ Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps
 }
 
 /// A position in a log at which reading can begin. In lockstep, the position is the first event of
-/// a step. In real time, the position is any event of a step, because an event does not show which
-/// event came before.
+/// a step. In real time, the position is any event of a step, because an event does not show
+/// whether it is the first event of its step.
 struct Start {
   std::int64_t step;
   LogHead head;

@@ -19,7 +19,8 @@ struct LogFront {
   bool realtime = false;
   std::int64_t type_fingerprint = 0;
   LogHead head;  // the part with scenario and graph; step 0 follows
-  // In lockstep: whether the log has the wall clock of each step. Known if the log has step 0.
+  // In lockstep: whether the log has the wall clock of each step. Always false if the log does not
+  // have the whole step 0.
   bool wall_clock = false;
 
   /// Number of events of each step in lockstep.

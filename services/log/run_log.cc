@@ -366,8 +366,8 @@ class RunLogReader::Assembler {
   std::map<std::int64_t, Pending> pending_;
   StepMessages current_{};
   std::int64_t next_ = 0;             // the step after current_
-  bool begun_ = false;                // whether a step was given
-  std::int64_t first_heard_ = 0;      // the first step with a message; in real time
+  bool begun_ = false;                // whether Next() has returned a step
+  std::int64_t first_heard_ = 0;      // in real time: the first step with a message
   std::int64_t first_steps_ = 0;      // complete steps before the first gap, in the digest
   std::optional<std::int64_t> tail_;  // the first step of the tail, if there is one
   runtime::ChannelSet tail_lacks_;    // the channels that this step lacks
@@ -385,8 +385,8 @@ class RunLogReader::Assembler {
   bool over_ = false;   // no further step follows: the log has ended, or an error was thrown
   bool ended_ = false;  // the log has no further event
   std::optional<RealtimeAccumulator> realtime_;
-  std::int64_t steps_ = 0;  // number of steps of the scenario, in real time
-  std::int64_t end_ = -1;   // number of steps of a world that is done, in real time; -1: unknown
+  std::int64_t steps_ = 0;  // in real time: number of steps of the scenario
+  std::int64_t end_ = -1;   // in real time: number of steps when the world was done; -1: unknown
 };
 
 RunLogReader::RunLogReader(const std::filesystem::path& file, const ReadOptions& options)

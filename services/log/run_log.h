@@ -37,14 +37,14 @@ struct RunLog {
   std::string scenario_text;
   std::string scenario_hash;
   runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
-  std::int64_t steps = 0;        // number of complete steps
-  // Digest of the complete steps. It is empty if no step is complete. It is also empty if the log
-  // has gaps and the reader accepts them (ReadOptions::gaps).
+  std::int64_t steps = 0;        // number of complete steps; in real time, of all steps
+  // Digest of these steps. It is empty if there are no such steps. It is also empty if the log has
+  // gaps and the reader accepts them (ReadOptions::gaps).
   std::string digest;
   // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
   // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
-  // messages of one step and channel differ. (A message after all others of its step is not
-  // compared.) In lockstep, the log must also have all messages.
+  // messages of one step and channel differ. (A message is not compared if Next() has already
+  // returned its step.) In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, STATUS says that no published message is missing. If
   // the log has no sound seal, STATUS must say this for all steps up to the last step that lacks a

@@ -17,8 +17,9 @@ struct DetectionMetrics {
   /// Time in which the human is the wrong driver, s: the human's time while the LiDAR is right,
   /// weighted by the human's authority.
   double wrong_human_s = 0;
-  /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
-  /// So this time is 0 for a policy that does not use the deceived LiDAR. It is above 0 for a
+  /// Time in which the automation is the wrong driver, s: the time while the track is wrong
+  /// (TrackJudge), weighted by the automation's authority. A policy that does not use the deceived
+  /// LiDAR can make this time 0, if the radar alone gives a right track. The time is above 0 for a
   /// policy that lets the automation drive again before the track is right again.
   double wrong_automation_s = 0;
   /// Time from the first step in which the LiDAR is deceived to the next step with an alarm, s. The

@@ -9,7 +9,8 @@
 
 namespace fogline::metrics {
 
-/// A field is nullopt if the run has no step in fog, or no following car.
+/// A field is nullopt if the run has no step in fog. Without a following car, only
+/// mean_compromised_safety_m is nullopt.
 struct FogEffect {
   /// Mean compromised safety CS of the first following car over the steps in fog, m.
   std::optional<double> mean_compromised_safety_m;

@@ -44,8 +44,9 @@ void VisitFollowerMetrics(const FollowerMetrics& m, Visitor&& visit) {
 /// Collects the measures of all following cars, step by step. Add() allocates no memory.
 class FollowerAccumulator {
  public:
-  /// Adds a step. In real time, `commands` may be missing (without followers). Safe distances are
-  /// then unknown, and the step counts only for the other measures.
+  /// Adds a step. In real time, the message for `commands` may be missing; `commands` then has no
+  /// followers. The safe distances are then unknown, so the step counts only for the gap and the
+  /// time to collision.
   void Add(const truth_t& truth, const follower_command_t& commands);
 
   /// One entry for each following car, nearest to the host first.

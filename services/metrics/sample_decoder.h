@@ -10,7 +10,7 @@ namespace fogline::metrics {
 class SampleDecoder {
  public:
   /// @param messages the encoded messages of a step, by index in kChannels
-  /// @return the sample, valid until the next call; nullptr if a message does not decode
+  /// @return the sample, valid until the next call; nullptr if a message cannot be decoded
   template <class Messages>
   const Sample* Decode(const Messages& messages) {
     return DecodeWith([&messages]<class M>(M& message) {
@@ -30,7 +30,7 @@ class SampleDecoder {
     });
   }
 
-  /// Messages of the step decoded last.
+  /// Messages of the last decoded step.
   const truth_t& truth() const { return truth_; }
   const track_t& track() const { return track_; }
   const driver_command_t& driver() const { return driver_; }

@@ -54,7 +54,8 @@ struct PairMetrics {
   /// 2001).
   std::optional<double> tit_s2;
   /// Least time gap d/v, s, while the car moves: from the rear bumper of the car ahead to the front
-  /// bumper. A headway is from front to front and also contains a car length (SAE J2944).
+  /// bumper of the car behind. A headway is from front to front and also contains a car length (SAE
+  /// J2944).
   std::optional<double> min_time_gap_s;
   /// Largest deceleration rate to avoid a crash, m/s2; steps in contact do not count.
   std::optional<double> max_drac_mps2;

@@ -26,8 +26,8 @@ class Radar {
 
   explicit Radar(const Scenario& scenario);
 
-  /// Resets the object to the state of a new Radar(scenario). Restart() is cheaper than a new
-  /// object if the seed is the same.
+  /// Resets the object to the state of a new Radar(scenario). If the seed is unchanged, the object
+  /// may keep the random numbers of its noise. The next run is then cheaper than with a new object.
   void Restart(const Scenario& scenario);
 
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,

@@ -44,8 +44,8 @@ void RecordRule::Listen() {
   });
 }
 
-// Subscribes to DRIVER_INPUT and TRIAL. The driver uses inputs from the first TRUTH on, and the
-// recorder has joined before this TRUTH.
+// Subscribes to DRIVER_INPUT and TRIAL. The constructor calls this function, because the driver
+// uses inputs from the first TRUTH on, and the recorder joins before this TRUTH.
 void RecordRule::ListenToInputs() {
   // The driver refuses and counts invalid messages. The recorder only ignores them.
   parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {

@@ -16,9 +16,9 @@ namespace {
 
 // Number of steps between two acknowledgements: a quarter of the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
-// The limits for messages that are sent again, per second and in one burst. At these limits the
-// answers take about a fifth of one processor's time. Every role that starts again asks for its
-// inputs of 63 steps at a time. A role with six inputs asks for 378 messages.
+// The limits for messages that are sent again, per second and in one burst. At the limit per second
+// the answers take about a fifth of one processor's time. A role that starts again asks for its
+// inputs of 63 steps at a time. With six inputs these are 378 messages, an eighth of a burst.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;

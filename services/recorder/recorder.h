@@ -2,9 +2,9 @@
 // The recorder takes part in the lockstep: the world is at most kMaxAhead steps ahead of the log on
 // disk. So a fast run loses no message. The log has the events in the order of the steps, and
 // within a step in the order of the graph table. The order of arrival does not matter. So the logs
-// of equal runs differ only in the run id. The recorder also answers requests for recorded steps,
-// from roles that have been started again. If the recorder itself is killed, another recorder
-// continues its log.
+// of equal runs differ only in the run id. A role that has been started again needs the messages of
+// recorded steps. The recorder answers its requests for these messages. If the recorder itself is
+// killed, another recorder continues its log.
 #pragma once
 
 #include <filesystem>

@@ -9,7 +9,8 @@
 
 namespace fogline::world {
 
-/// The preceding car's speed profile. Profile sumo has no speeds here (services/models/traffic).
+/// The preceding car's speed profile. The speeds of profile sumo come from services/models/traffic
+/// instead.
 class Leader {
  public:
   /// @throw std::invalid_argument if the profile is `recorded` and there are no speeds.

@@ -90,7 +90,7 @@ class VehicleFallback {
  private:
   struct FollowingCar {
     CarFallback fallback;
-    std::int64_t empty_steps = 0;  // messages without an acceleration for this car
+    std::int64_t empty_steps = 0;  // consecutive messages without an acceleration for this car
   };
 
   void StepHost(const truth_t& now, const Heard<arbitration_t>& host);

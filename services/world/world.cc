@@ -186,8 +186,8 @@ void World::FollowTraffic() {
     in_traffic_[i - kHost] = models::Advance(cars_[i].motion, cars_[i].acceleration_mps2, step_s_);
   }
   ahead_ = traffic_->Step(in_traffic_);
-  // The preceding car keeps its speed in two cases: at the end of the step another car is ahead of
-  // the host, or the lane is empty.
+  // The preceding car keeps its speed during this step in two cases: at the end of the step a
+  // different car is ahead of the host, or the lane is empty.
   const bool same = ahead_ && !ahead_->changed;
   const double change_mps = same ? ahead_->speed_mps - cars_[kPreceding].motion.speed_mps : 0.0;
   Obey(kPreceding, change_mps / step_s_);

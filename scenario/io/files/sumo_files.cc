@@ -13,9 +13,11 @@
 namespace fogline {
 namespace {
 
-constexpr std::size_t kMostBytes = kMaxTextLength;  // so at most kMaxTextLength characters
+// A piece of at most this many bytes has at most kMaxTextLength characters.
+constexpr std::size_t kMostBytes = kMaxTextLength;
 
-/// Appends a line in pieces of at most kMostBytes bytes. @return false if a piece would be longer
+/// Appends a line in pieces of at most kMostBytes bytes. @return false if the line has more than
+/// kMostBytes bytes without a space at which it can be split
 bool AppendLine(std::string_view line, std::vector<std::string>& lines) {
   while (line.size() > kMostBytes) {
     const std::size_t space = line.rfind(' ', kMostBytes);
@@ -27,7 +29,8 @@ bool AppendLine(std::string_view line, std::vector<std::string>& lines) {
   return true;
 }
 
-/// Reads the lines of a file. In XML a tab is a space, and no other control character is allowed.
+/// Reads the lines of a file. Replaces each tab with a space, which means the same in XML, and
+/// removes carriage returns. Any other control character within a line is a mistake.
 /// @return the mistake in the file; "" if the file has none
 std::string ReadLines(const std::filesystem::path& file, std::vector<std::string>& lines) {
   FileText read = ReadFile(file, kMaxFileBytes, ".xml");

@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// A machine, and the roles that run there.
+/// A machine, and the roles that run on it.
 struct LabHostSection {
   FOGLINE_FIELD(std::string, name, "", "Name of the machine in messages, and after --on ROLE=.");
   FOGLINE_FIELD(std::string, ssh, "",

@@ -8,7 +8,7 @@ namespace fogline::conflict {
 struct StatedRange {
   bool valid = false;  // false: no value in this step; other fields have no meaning
   double range_m = 0;  // m
-  double std_m = 0;    // m, above 0; the nominal value, because a larger one would hide conflict
+  double std_m = 0;    // m, above 0; nominal: a value that grows with errors would hide conflict
 };
 
 /// The evidence of one step: two sensors, and a third witness.
@@ -40,8 +40,8 @@ class ConflictMeasure {
 struct Blame {
   double radar = 0;
   double lidar = 0;
-  /// Above 0 if the radar is more wrong than the LiDAR, below 0 if it is less wrong. If both blames
-  /// round to 1, a measure can still tell the two sensors apart.
+  /// Above 0 if the radar is more wrong than the LiDAR, below 0 if it is less wrong. A measure can
+  /// set this number so that it still tells the two sensors apart if both blames round to 1.
   double radar_excess = radar - lidar;
 
   friend bool operator==(const Blame&, const Blame&) = default;

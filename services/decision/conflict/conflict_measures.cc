@@ -36,13 +36,13 @@ ConflictPtr MakeMomentary(const Parameters& parameters, Score score) {
   return std::make_unique<Momentary<Score>>(parameters, std::move(score));
 }
 
-// A measure that is a function of the step's disagreement.
+// Makes a measure that is a function of the step's disagreement.
 template <auto kScore>
 ConflictPtr OfDisagreement(const Parameters& parameters) {
   return MakeMomentary(parameters, [](const Disagreement& d) { return kScore(d); });
 }
 
-// A measure that is a function of the two readings on bins.
+// Makes a measure that is a function of the two readings on bins.
 template <auto kScore>
 ConflictPtr OnBins(const Parameters& parameters) {
   return MakeMomentary(parameters, [parameters](const Disagreement& d) {
@@ -50,7 +50,7 @@ ConflictPtr OnBins(const Parameters& parameters) {
   });
 }
 
-// A measure that is a method of ConsonantBeliefs.
+// Makes a measure that is a method of ConsonantBeliefs.
 template <auto kScore>
 ConflictPtr OnConsonant(const Parameters& parameters) {
   return MakeMomentary(parameters, [beliefs = ConsonantBeliefs(parameters.levels)](

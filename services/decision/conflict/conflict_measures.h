@@ -10,7 +10,8 @@
 
 namespace fogline::conflict {
 
-/// One measure. `Measure` is ConflictMeasure or BlameMeasure.
+/// One row of a table: a measure of conflict or of blame. `Measure` is ConflictMeasure or
+/// BlameMeasure.
 template <class Measure>
 struct MetricRow {
   std::string_view name;  // name in the scenario (scenario/sections/decision.h)

@@ -26,8 +26,9 @@ struct ConflictParameters {
   /// With the rule `conflict`, a missing value counts as this difference, m, above 0. The
   /// scenario's section `arbitrator` has the same default.
   double missing_conflict_m = 10;
-  /// Standard deviations, m, above 0, for a missing value that counts as conflict before the sensor
-  /// has stated a standard deviation. Sources: Continental ARS408 far range; Velodyne VLP-16.
+  /// Standard deviations, m, above 0. They are used if a missing value counts as conflict and the
+  /// sensor has not yet stated a standard deviation. Sources: Continental ARS408 far range;
+  /// Velodyne VLP-16.
   double nominal_radar_std_m = 0.4;
   double nominal_lidar_std_m = 0.03;
   /// Lower limit of stated standard deviations, m, above 0. The limit keeps every quotient finite.
@@ -48,13 +49,14 @@ struct ConflictParameters {
   /// Number of steps that the GLR test looks back for a jump, at least 1; 20 steps are 2 s at 10
   /// Hz. Basseville & Nikiforov 1993, 2.4.3, also limit this number, because of the computing cost.
   int glr_window_steps = 20;
-  /// Number of steps whose mean residual gives the NIS blame (third_witness.h), at least 1. With 1,
-  /// the blame depends only on the NIS of the step.
+  /// Number of steps whose residuals give the NIS blame (third_witness.h), at least 1. With 1, the
+  /// blame depends only on the NIS of the step.
   int blame_window_steps = 1;
 
   // ---- Beliefs on bins ----
 
-  /// Width of a bin, m, above 0. The default is about the largest standard deviation.
+  /// Width of a bin, m, above 0. The default is a little above the larger nominal standard
+  /// deviation of the two sensors.
   double bin_width_m = 0.5;
   /// Number of bins of the frame (all ranges that are possible), at least 2. The default of 500
   /// bins of 0.5 m covers 250 m.

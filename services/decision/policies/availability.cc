@@ -14,12 +14,17 @@ constexpr double kPercentile = 0.95;  // percentile of take-over times, after Ma
 
 }  // namespace
 
-// Let c be the limit; availability.h has the other symbols. The equation (w + b t)^2 = 2 c (s - w t
-// - b t^2/2) is A t^2 + B t + C = 0. The code below computes A, B and C. B^2 - 4 A C = 4 c (b +
-// c)(w^2 + 2 b s) is above 0 if the gap s and the host's braking b are above 0. So the time is
-// always finite if the host brakes. The result is the larger root. If the host is faster (w < 0),
-// the follower does not have to brake before the speeds are equal. The larger root comes after this
-// moment.
+// Let c be the limit; availability.h has the other symbols. The equation
+//
+//     (w + b t)^2 = 2 c (s - w t - b t^2/2)
+//
+// has the form A t^2 + B t + C = 0. The code below computes A, B and C. The discriminant
+//
+//     B^2 - 4 A C = 4 c (b + c)(w^2 + 2 b s)
+//
+// is above 0 if the gap s and the host's braking b are above 0. So the time is always finite if the
+// host brakes. The result is the larger root. If the host is faster (w < 0), the follower does not
+// have to brake before the speeds are equal. The larger root comes after this moment.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2) {
   constexpr double kNever = std::numeric_limits<double>::infinity();

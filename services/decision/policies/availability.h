@@ -24,9 +24,10 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
 /// available, the automation continues to drive. Marberger et al. 2018 define availability as the
 /// time budget minus the required time.
 ///
-/// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion does not
-/// know whether the driver is available. While the driver drives, the track is not used. When the
-/// automation drives again, it has a usable track from the first step on.
+/// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion excludes
+/// this sensor in every step, because it does not know whether the driver is available. It also
+/// does so while the driver drives, although the track is then not used. So when the automation
+/// drives again, it has a usable track from the first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

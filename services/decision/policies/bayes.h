@@ -14,7 +14,7 @@ namespace fogline::policies {
 /// (services/decision/conflict/over_time/lidar_modes.h). With the paper's z, the DoC is only a
 /// steep function of the conflict. The expected costs depend on the driver's readiness A, the
 /// visibility MOR and the follower's time to collision TTC. All other words are fields of the
-/// scenario (BayesSection):
+/// scenario (BayesSection), without their endings _cost and _s: `human` is human_cost, for example.
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
 ///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation

@@ -14,8 +14,8 @@ constexpr std::size_t kLidarRange = 2;
 
 double Square(double x) { return x * x; }
 
-// Variance in m2 of the distance that the filter predicts for the next step, from its covariance
-// P. The variance is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
+// Variance in m2 of the distance that the filter predicts for the next step, computed from the
+// filter's covariance P. The variance is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
 double NextDistanceVariance(const double (&covariance)[3][3], double step_s,
                             double jerk_density_m2ps5) {
   const std::array<double, 3> row{1, step_s, step_s * step_s / 2};  // of F
@@ -80,7 +80,7 @@ conflict::StatedRange Witness::Predicted(const track_t& track, const Sensor& sen
   if (track.usage[sensor.value] == track_t::ABSENT) return {};
   const double range_m = measured_m - track.innovation[sensor.value];
   const double variance_m2 = VarianceOf(track, sensor, range_m);
-  if (variance_m2 <= 0) return {};  // the value started the track
+  if (variance_m2 <= 0) return {};  // unknown, or the value started the track
   return {.valid = true, .range_m = range_m, .std_m = std::sqrt(variance_m2)};
 }
 

@@ -10,12 +10,12 @@
 
 namespace fogline::policies {
 
-/// The parameters of the measures that `section` (section `arbitrator` of the scenario, with its
-/// `transfer`) states. All other parameters have the defaults of
+/// The parameters of the conflict measures. Some of them are fields of `section` (section
+/// `arbitrator` of the scenario, with its `transfer`). All other parameters have the defaults of
 /// services/decision/conflict/conflict_parameters.h.
 conflict::ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
-/// The row of a measure, for a choice of the scenario.
+/// The row of the measure of conflict, or of blame, that the scenario has chosen.
 const conflict::ConflictMeasureRow& RowOf(MeasureChoice choice);
 const conflict::BlameMeasureRow& RowOf(BlameChoice choice);
 
@@ -47,7 +47,8 @@ class Witness {
                                    const lidar_t& lidar);
 
  private:
-  /// The values that are needed to undo the filter's use of a sensor's range.
+  /// The constants that are needed to compute the prediction from a sensor's range and its
+  /// innovation.
   struct Sensor {
     std::size_t value;  // index in track_t's arrays
     double noise_m2;    // variance of the noise that the filter assumes

@@ -38,7 +38,7 @@ constexpr PolicyRow RowFor(std::string_view name) {
           }};
 }
 
-/// All policies; a `Policy` is the index of a row.
+/// All policies. The value of a `Policy` is the index of its row.
 std::span<const PolicyRow> Policies();
 
 /// The row of this policy.

@@ -5,9 +5,9 @@
 
 namespace fogline::policies {
 
-/// The paper's rule. While the automation drives, it does not use the sensor that is to blame, as
-/// in policy Isolate. If the driver must be asked, the automation drives in this way until the
-/// driver takes over.
+/// Decides by the paper's rule, as policy Traded. While the automation drives, it does not use the
+/// sensor that is to blame, as in policy Isolate. If the driver must be asked, the automation
+/// drives in this way until the driver takes over.
 class TradedIsolating final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kThreshold;

@@ -24,7 +24,7 @@ MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
 }
 
-/// Returns a_P in m/s2: a person overrides only with an acceleration of at most a_P. nullopt if no
+/// Returns a_P in m/s2. A person overrides only if the person's offer is at most a_P. nullopt if no
 /// person can override.
 std::optional<double> OverrideOf(const PersonSection& person) {
   if (!person.drives || person.override_by == OverrideBy::kNone) return std::nullopt;
@@ -128,7 +128,8 @@ void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
   transferred_ = step;
   overridden_ = row.event == TakeOverEvent::kOverride;
   if (row.state != TakeOverState::kAutomated) return;
-  // No request led to this authority: the last request has ended before.
+  // The driver has got this authority without a request. The last request, if there was one, has
+  // ended earlier.
   request_.reset();
   awaits_answer_ = false;
 }

@@ -23,7 +23,7 @@ struct TakeOverInputs {
   double human_mps2 = 0;           // the driver's offer
   double readiness = 0;            // the driver's readiness, in [0, 1]
   double speed_mps = 0;            // speed of the host
-  double applied_mps2 = 0;         // last sent command; at first the applied acceleration
+  double applied_mps2 = 0;         // last sent command; before the first, the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
   // Inputs of a person who drives; always false for the model of a driver.
   bool acknowledged = false;  // the driver answers now
@@ -51,7 +51,8 @@ inline constexpr double kOverdueFactor = 2.0;
 /// offers of automation and driver, a' the last sent command, h the step, and j = jerk_mps3:
 ///
 ///     acknowledgement  t >= T, if T <= lead_s. T is drawn in the step of the request
-///                      (take_over_time.h). With absent_probability, T is infinite.
+///                      (take_over_time.h). T is infinite with the probability
+///                      absent_probability.
 ///     transfer         t >= T and readiness >= required_readiness
 ///     override         only for a person, and only with override_by brake: a_H <= a_P, a_H < a',
 ///                      and readiness >= required_readiness
@@ -62,11 +63,12 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      clip(-a_A, comfort, emergency) in the first stage, and emergency in the
 ///                      second stage.
 ///
-/// So the target deceleration of the manoeuvre is at least that of the automation, up to the
-/// emergency's deceleration. The limit of the jerk, and the smooth release before the car stands,
-/// can make the command smaller. A driver who is not absent is late if and only if T > lead_s.
-/// Between acknowledgement and transfer the automation drives for at least one step. Only a driver
-/// who overrides, or who answers during the manoeuvre, gets authority without such a step.
+/// So the target deceleration of the manoeuvre is at least that of the automation, but at most
+/// emergency_deceleration_mps2. The limit of the jerk, and the smooth release before the car
+/// stands, can make the command smaller. A driver who is not absent is late if and only if T is
+/// above lead_s. Between acknowledgement and transfer the automation drives for at least one step.
+/// Only a driver who overrides, or who answers during the manoeuvre, gets authority without such a
+/// step.
 ///
 /// If the scenario has a person who drives, no random number is drawn: T is the time of the first
 /// step after the request in which the person answers. A return to the automation has a further
@@ -84,8 +86,8 @@ class TakeOver {
   /// @throw std::invalid_argument if lead_s is below kLeastLead_s, or if TakeOverTime throws it
   explicit TakeOver(const Scenario& scenario);
 
-  /// Decides the step of `header`. Call Step() in the order of steps; some steps may be skipped.
-  /// The result is valid until the next call.
+  /// Makes the decision for the step of `header`. Call Step() in the order of steps; some steps may
+  /// be skipped. The result is valid until the next call.
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
@@ -126,8 +128,8 @@ class TakeOver {
   models::MinimalRisk manoeuvre_;
 
   std::optional<TakeOverRequest> request_;
-  bool awaits_answer_ = false;     // of a person
-  std::int64_t answer_step_;       // step of the last answer
+  bool awaits_answer_ = false;     // whether a person's answer is expected
+  std::int64_t answer_step_;       // step of the answer; may lie in the future
   bool in_time_ = false;           // whether the driver answers within lead_s
   std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
   std::optional<std::int64_t> transferred_;  // step in which the driver got the authority

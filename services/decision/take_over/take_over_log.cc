@@ -16,9 +16,9 @@ const TakeOverStateInfo* StateOf(std::int8_t mode) {
   return info == kTakeOverStates.end() ? nullptr : info;
 }
 
-/// The text of the table for this change of state. Some changes are not in the table, because the
-/// driver need not be asked, or because inputs have failed in real time. Such a change gets a
-/// separate text.
+/// The text that the table has for the change from the mode `from` to the mode `to`. Some changes
+/// are not in the table, because the driver need not be asked, or because inputs have failed in
+/// real time. Such a change gets a separate text.
 std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   const TakeOverStateInfo* a = StateOf(from);
   const TakeOverStateInfo* b = StateOf(to);
@@ -34,15 +34,15 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   return "change of state";
 }
 
-/// Whether the automation drives, and the driver has not answered a request (or there is none).
-/// Only an override leads from such a mode to RECOVERING.
+/// Whether the automation drives without an answer of the driver: there is no request, or the
+/// driver has not answered it. Only an override leads from such a mode to RECOVERING.
 bool IsUnanswered(std::int8_t mode) {
   return mode == arbitration_t::AUTOMATION || mode == arbitration_t::REQUEST ||
          mode == arbitration_t::REQUEST_URGENT;
 }
 
-/// Whether only a run with requests can have this command. This is true if the mode is a state of a
-/// request, or if the mode names the side with less authority.
+/// Whether such a command occurs only in runs with requests. This is true if the mode is a state of
+/// a request, or if the mode names the side with less authority.
 bool ShowsRequests(const arbitration_t& command) {
   if (command.mode == arbitration_t::AUTOMATION) return HumanDrives(command.lambda_human);
   if (command.mode == arbitration_t::HUMAN) return !HumanDrives(command.lambda_human);
@@ -109,7 +109,8 @@ void TakeOverLog::Reveal(const arbitration_t& command) {
   last_->mode = DecidedMode(command);
   began_in_request_ =
       last_->mode != arbitration_t::AUTOMATION && last_->mode != arbitration_t::HUMAN;
-  // Emergency braking hides no manoeuvre, so the manoeuvre begins in this step.
+  // Emergency braking does not replace the modes of a manoeuvre. So the manoeuvre begins in this
+  // step.
   if (!InEmergency(last_sent_) || !InMinimalRisk(command.mode)) return;
   entries_.push_back({.step = command.header.step,
                       .earliest_step = earliest_,
@@ -128,7 +129,8 @@ std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
   if (hidden_ || !InEmergency(command.mode)) return command.mode;
   if (last_ && asks_) {
     if (command.mode == arbitration_t::EMERGENCY_BRAKING) return last_->mode;
-    // A collision warning replaces only AUTOMATION and HUMAN. HUMAN follows RECOVERING.
+    // A collision warning replaces only AUTOMATION and HUMAN. So if the last state was RECOVERING,
+    // the state is now HUMAN, which follows RECOVERING.
     if (last_->mode == arbitration_t::AUTOMATION || HumanDrives(last_->mode)) {
       return HumanDrives(last_->mode) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
     }
@@ -214,7 +216,8 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   // There may be no open request to update.
   if (requests_.empty() || unasked_) return;
   requests_.back().Enter(state->state, command.header.step);
-  // Transfer() sets `transferred`, because in kRecovering the driver's share may still be small.
+  // Enter() has set `transferred`. But in kRecovering the driver's share may still be small. So the
+  // field is emptied here, and Transfer() sets it.
   if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
 }
 

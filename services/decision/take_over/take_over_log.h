@@ -17,11 +17,17 @@ namespace fogline::take_over {
 /// Name of the state that belongs to a mode of HOST_COMMAND; "UNKNOWN" for an invalid mode.
 std::string_view NameOfMode(std::int8_t mode);
 
-/// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
-/// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, `from`
-/// and `to` are the modes of the commands. The same is true for the first entry if the log begins
-/// late. For other events, `from` and `to` are the modes that the commands would have without
-/// emergency braking.
+/// An event of a step. `from` and `to` are the modes before and after the event. They are the same
+/// mode in these cases:
+/// - The entry is the first entry.
+/// - A driver's input became effective.
+/// - lambda_H passed one half, but the mode did not change with it (on a ramp, or under a policy
+///   that shares authority).
+/// - A manoeuvre begins, and emergency braking has hidden the state since the beginning of the log.
+///
+/// If emergency braking or its warning begins or ends, `from` and `to` are the modes of the
+/// commands. The same is true for the first entry if the log begins late. For other events, `from`
+/// and `to` are the modes that the commands would have without emergency braking.
 struct TakeOverEntry {
   std::int64_t step = 0;  // the first step whose command shows the event
   // The first step in which the event may have happened. It is before `step` if the log lacks the
@@ -36,8 +42,7 @@ struct TakeOverEntry {
 };
 
 /// The text of an entry, for a person who reads it. For an acknowledgement, the text says whether a
-/// person has acknowledged, or whether the answer of the driver model was drawn. The text also
-/// says whether a person has overridden.
+/// person or the driver model has acknowledged. The text also says whether a person has overridden.
 /// @param person section of the scenario of this run
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
@@ -73,8 +78,9 @@ class TakeOverLog {
   /// command is of a step after step 0, and if the first mode that emergency braking does not hide
   /// is a mode other than AUTOMATION and HUMAN.
   bool BeganInRequest() const { return began_in_request_; }
-  /// The mode of the last command without emergency braking; AUTOMATION before the first command.
-  /// EMERGENCY_BRAKING if the log begins late, and all commands so far have this mode.
+  /// The mode that the last command would have without emergency braking. The result is AUTOMATION
+  /// before the first command. It is EMERGENCY_BRAKING if the log begins late, and all commands so
+  /// far have this mode.
   std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
   /// Removes the entries so far, and all requests except the last request, which may still change.
   /// So a reader of an endless run needs bounded memory. @return the entries
@@ -89,15 +95,15 @@ class TakeOverLog {
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
   void NoteUnasked(std::int8_t from, std::int8_t to);
   void Transfer(const arbitration_t& command);
-  /// Whether the commands of the steps before this one are missing, and a request began there.
+  /// Whether the log lacks the commands just before this command, and a request began in this gap.
   bool HidesRequest(const arbitration_t& command, std::int8_t from) const;
   void Drive(const arbitration_t& command, std::optional<double> human_mps2);
 
   std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
-  // The next two fields have a meaning only if the driver has a share of the authority. The first
-  // is the command before the driver got the share; it is empty after the driver's first effective
-  // input. The second says whether the driver was asked.
+  // The next two fields have a meaning only if the driver has a share of the authority.
+  // before_share_mps2_ is the command before the driver got the share; it is empty after the
+  // driver's first effective input. asked_ says whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
   // Whether the driver has, or had, authority without an open request. Three events lead to this:
@@ -109,7 +115,7 @@ class TakeOverLog {
   bool hidden_ = false;
   bool began_in_request_ = false;
   std::optional<std::int64_t> unknown_offer_;  // the first step of this share without an offer
-  std::int64_t earliest_ = 0;                  // the step after the command before this one
+  std::int64_t earliest_ = 0;                  // the step after the previous command
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

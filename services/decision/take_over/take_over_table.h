@@ -21,14 +21,14 @@ enum class TakeOverState : std::uint8_t {
   kMrmComfort,    // minimal risk manoeuvre, first stage
   kMrmEmergency,  // minimal risk manoeuvre, second stage
   kMrmDone,       // the car stands until the end of the run
-  kMrmFailed,     // the brake does not bring the car to a standstill
+  kMrmFailed,     // the brake has not stopped the car in time; the manoeuvre continues
 };
 
 /// Conditions of a step that can change the state. Several conditions may be true in one step. Then
 /// the first row of the table that applies decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
-  kCalm,          // the policy does not want the human to drive
+  kCalm,          // the policy does not want the human; a person must also give the authority back
   kEscalation,    // escalation_s after the request
   kAcknowledged,  // the driver has answered within lead_s
   kReady,         // the driver has answered, maybe late; readiness is at least required_readiness
@@ -36,9 +36,9 @@ enum class TakeOverEvent : std::uint8_t {
   kSevere,        // time to collision with the tracked car is below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
   kStandstill,
-  kOverdue,   // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
+  kOverdue,   // the stage takes longer than kOverdueFactor times the time that its brake needs
   kOverride,  // the driver overrides by the brake (TakeOver)
-  kGone,      // the seat of a person who may come back is empty
+  kGone,      // the person has left the seat (readiness 0), and may come back
 };
 
 /// The events of a step, one bit each.
@@ -55,7 +55,7 @@ enum class TakeOverGuard : std::uint8_t {
 /// Which side has authority. The authority determines the applied acceleration.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
-  kEasing,      // the automation's offer, at most a ramp down to -slow_down_mps2
+  kEasing,      // the automation's offer, but at most a ramp that falls to -slow_down_mps2
   kHuman,       // the human's offer
   kComfort,     // no side: the manoeuvre with comfort_deceleration_mps2
   kHard,        // no side: the manoeuvre with emergency_deceleration_mps2
@@ -80,16 +80,16 @@ using Row = TakeOverRow;
 
 /// The rows of a state are tried in this order. If no row applies, state and authority do not
 /// change. Sources, by paragraph of UN R157:
-///   - Only deactivation or the manoeuvre ends a request to take over (5.4.4); a change of the
-///     policy's engagement request does not.
-///   - The manoeuvre begins within lead_s of the request (5.4.4.1) only in a severe situation
-///     (5.4.4.1.1).
+///   - A request to take over ends only when the automation is deactivated or the manoeuvre begins
+///     (5.4.4). A change of the policy's engagement request does not end it.
+///   - If the driver has not taken over, the manoeuvre begins lead_s after the request (5.4.4.1).
+///     It begins earlier only in a severe situation (5.4.4.1.1).
 ///   - A late driver ends the manoeuvre, in either stage, while the car moves (5.5.2, 5.5.3). The
 ///     reason is that a present and able driver may always drive. SUMO's ToC device has the same
 ///     rule.
 ///   - After any manoeuvre, the automation is not activated again before the next run cycle
 ///     (5.5.5). The rule also applies if the driver has ended the manoeuvre. A car at standstill
-///     does not drive off, because driving off (5.5.4) is a new run.
+///     does not drive off, because driving off (5.5.4) belongs to a new run.
 ///   - The manoeuvre never returns from its second stage to its first stage (Autoware's
 ///     mrm_handler).
 ///   - A driver who brakes harder than the car overrides without delay, with or without a request

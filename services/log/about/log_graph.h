@@ -24,8 +24,8 @@ void WriteLogGraph(EventLogWriter& log, std::int64_t run_id,
                    const runtime::ChannelSet& channels = OwnStepChannels());
 
 /// The channels that an event on kLogGraphChannel names.
-/// @return no channel if the event is not a graph of this run, or if the graph lacks TRUTH (only
-///     TRUTH shows which step is the last)
+/// @return these channels; an empty set if the event is not a graph of this run, or if the graph
+///     lacks TRUTH (only TRUTH shows which step is the last)
 /// @throws InputError for a channel that this program does not know; the error text does not
 ///     contain the log's name
 runtime::ChannelSet ReadLogGraph(const Event& event, std::int64_t run_id);

@@ -29,7 +29,7 @@ struct LogGaps {
   static constexpr std::size_t kMostGaps = 1000;
 
   std::int64_t first = 0;  // the first step of which the log has a message
-  std::int64_t steps = 0;  // steps after `first` that lack a message
+  std::int64_t steps = 0;  // number of steps from `first` on that lack a message
   std::array<std::int64_t, kNumChannels> messages{};  // missing messages of each channel
   std::vector<Gap> gaps;                              // the first gaps, at most kMostGaps
   std::int64_t left_out = 0;                          // number of later gaps

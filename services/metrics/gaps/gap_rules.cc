@@ -18,15 +18,15 @@ Channels Of() {
 
 /// The steps that a measure needs.
 enum class Needs : std::uint8_t {
-  kAnyStep,    // without a value, every step, because a missing step might have a value
-  kLaterStep,  // without a value, the last step, which repeats a value of any earlier step
+  kAnyStep,    // any steps; every step if there is no value, because a missing step might give one
+  kLaterStep,  // the last step if there is no value, because it repeats a value of an earlier step
   kEveryStep,
   kEveryStepFromTheBeginning
 };
 
 struct GapRule {
   std::string_view measure;
-  Channels channels;  // from which the measure is computed
+  Channels channels;  // the channels from which the measure is computed
   Needs needs = Needs::kAnyStep;
 };
 

@@ -13,10 +13,10 @@ namespace fogline::metrics {
 /// The messages that the log of a run lacks.
 struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
-  std::bitset<kNumChannels> every;     // the channels of which no step with TRUTH has a message
+  std::bitset<kNumChannels> every;     // the channels without a message in any step with TRUTH
   bool beginning = false;              // whether the first steps are missing
   bool end = false;                    // whether the log ends before the run
-  bool last = false;                   // whether TRUTH is missing, also in the last step
+  bool last = false;                   // whether TRUTH lacks messages, including the last one
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
 
@@ -24,13 +24,17 @@ struct Lack {
 };
 
 /// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc says from which
-/// channels a measure is computed, and which steps it needs. Sums over time, counts, shares of
-/// time, and differences between steps need every step: such a measure is unknown if a message of
-/// its channels is missing. If it also depends on the beginning of the run, it is unknown if the
-/// beginning is missing. Extremes and means are computed from the steps that the log has. They are
-/// unknown if the log has no message of a channel, or if they have no value and a missing step
-/// might give one. Every TRUTH after a collision repeats the collision. A measure that the table
-/// does not have is known only if nothing is missing.
+/// channels a measure is computed, and which steps it needs:
+/// - Sums over time, counts, shares of time, and differences between steps need every step. Such a
+///   measure is unknown if a message of its channels is missing. If the measure also depends on the
+///   beginning of the run, it is unknown if the beginning is missing.
+/// - Extremes and means are computed from the steps that the log has. They are unknown if the log
+///   has no message of one of their channels, or if they have no value and a missing step might
+///   give one.
+/// - The measures of a collision are unknown if they have no value and the last TRUTH is missing.
+///   The last TRUTH is sufficient, because every TRUTH after a collision repeats the collision.
+///
+/// A measure that the table does not have is known only if nothing is missing.
 bool IsKnown(std::string_view measure, bool has_value, const Lack& lack);
 
 /// The same for a value that VisitMetrics() gives.

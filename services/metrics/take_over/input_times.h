@@ -11,9 +11,9 @@
 
 namespace fogline::metrics {
 
-/// A pedal has moved if its position differs by this share of its travel from the position at the
-/// request. Our choice: 1 % is more than two steps of an axis with 8 bits (0.4 % each), so the
-/// noise of such an axis does not count as a movement.
+/// A pedal has moved if its position differs by at least this share of its travel from the position
+/// at the request. Our choice: 1 % is more than two steps of an axis with 8 bits (0.4 % each), so
+/// the noise of such an axis does not count as a movement.
 inline constexpr double kMovement = 0.01;
 
 /// Fills in first_movement_time_s and pedal_on_time_s of the requests of a run.
@@ -29,15 +29,15 @@ class InputTimes {
   InputTimes(std::span<TakeOverMeasures> requests, double pedal)
       : requests_(requests), pedal_(pedal) {}
 
-  /// Adds the next input of a seat whose inputs the driver has used. The inputs of a seat must come
-  /// in order.
+  /// Adds the next input of a seat. The driver must have used inputs of this seat (a DRIVER_COMMAND
+  /// contains its instance). The inputs of a seat must come in order.
   void Add(const driver_input_t& input);
 
  private:
   struct Position {
     double throttle = 0;
     double brake = 0;
-    bool button = false;  // for taking over
+    bool button = false;  // whether the button for taking over is down
   };
   /// A seat: its last input, and its input at the last request.
   struct Seat {

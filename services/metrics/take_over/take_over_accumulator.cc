@@ -16,7 +16,7 @@ bool ExcludesASensor(const track_t& track) {
   return std::ranges::find(track.usage, track_t::DISTRUSTED) != std::end(track.usage);
 }
 
-/// Whether the judged interval ends in a step with this mode.
+/// Whether the judged interval ends in a step with this mode and this speed.
 bool IsOver(std::int8_t mode, double speed_mps) {
   if (mode == arbitration_t::MINIMAL_RISK) return speed_mps < take_over::kStandstill_mps;
   return mode == arbitration_t::AUTOMATION || mode == arbitration_t::HUMAN ||
@@ -122,11 +122,12 @@ void TakeOverAccumulator::Look(const truth_t& truth) {
   TakeOverMeasures& request = requests_.back();
   request.judged_s = Seconds(truth.header.utime - requested_us_);
   if (!request.speed_at_fog_mps && !judged_->fog_unknown) request.speed_at_fog_mps = fog_speed_mps_;
-  // The measures that depend on the duration of a step are not used.
+  // The duration of a step is given as 0, because the measures that depend on it are not used.
   judged_->pair.Add({truth.host_gap_m, truth.host_speed_mps, truth.preceding_speed_mps}, 0);
 }
 
-// TakeOverLog notes an event in the step in which the event happens.
+// TakeOverLog notes an event in the step in which the event happens. So the time of this step is
+// the time of each event that is noted for the first time.
 void TakeOverAccumulator::NoteTimes(std::int64_t utime) {
   const take_over::TakeOverRequest& noted = log_.requests().back();
   TakeOverMeasures& request = requests_.back();

@@ -43,7 +43,7 @@ class TakeOverAccumulator {
  private:
   /// Values of the judged interval, while it lasts.
   struct Judged {
-    bool fog_unknown = false;   // there is fog at the request, and the log lacks its beginning
+    bool fog_unknown = false;   // the log lacks the beginning of the fog at the request
     bool jerk_unknown = false;  // the log begins less than 1 s before a step of the interval
     Mean deceleration_mps2;
     // Only TTC and time gap are used. These two measures do not depend on the section.
@@ -76,11 +76,12 @@ class TakeOverAccumulator {
   AveragedJerk jerk_;
   std::optional<bool> late_;  // whether the log lacks the first steps; empty before the first step
   bool foggy_ = false;
-  // Speed when the present fog began. Empty in clear air, and if the log lacks this step.
+  // Speed when the current fog began. Empty in clear air, and if the log lacks the first step of
+  // this fog.
   std::optional<double> fog_speed_mps_;
   std::vector<TakeOverMeasures> requests_;
   std::int64_t requested_us_ = 0;  // time of the last request
-  std::optional<Judged> judged_;   // of the last request
+  std::optional<Judged> judged_;   // values of the last request; empty after its judged interval
   bool excludes_ = false;          // the policy excluded a value of a sensor in the last TRACK
 };
 

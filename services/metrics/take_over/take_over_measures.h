@@ -10,7 +10,7 @@ namespace fogline::metrics {
 
 /// How a request to take over ended.
 enum class TakeOverEnd : std::uint8_t {
-  kOpen,           // the run ended before the request did
+  kOpen,           // the run ended before the request ended
   kTakenOver,      // the driver got a share of the authority before any manoeuvre
   kTakenOverLate,  // the driver ended a minimal risk manoeuvre
   kMinimalRisk,    // a minimal risk manoeuvre, and the driver did not take over
@@ -29,7 +29,7 @@ std::string_view NameOf(TakeOverEnd end);
 /// The *judged interval* begins with the step of the request. It ends with the first step in which
 /// the driver counts as recovered, the automation drives again, or the car stands after a minimal
 /// risk manoeuvre. If no such step comes, the interval ends with the run. If the log ends before
-/// the run and the interval do, all measures of the interval are empty.
+/// the end of the run, and the interval has not ended yet, all measures of the interval are empty.
 struct TakeOverMeasures {
   TakeOverEnd outcome = TakeOverEnd::kOpen;
   /// Time of the request since the start of the run, s.

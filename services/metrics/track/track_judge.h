@@ -21,9 +21,9 @@ double ErrorOfOffsets(const Scenario& scenario);
 ///
 ///     d_fused - d < min(0, e_0) - tolerance   or   d_fused - d > max(0, e_0) + tolerance
 ///
-/// So a true distance and the distance of clear air always count as right. The cause of an error
-/// has no effect. The cause may be a deceived LiDAR, a filter that has not settled, or a policy
-/// that uses only the sensor with the larger offset. A step without a track is not wrong.
+/// So the true distance d and the distance d + e_0 of clear air always count as right. The cause of
+/// an error has no effect. The cause may be a deceived LiDAR, a filter that has not settled, or a
+/// policy that uses only the sensor with the larger offset. A step without a track is not wrong.
 class TrackJudge {
  public:
   explicit TrackJudge(const Scenario& scenario);

@@ -19,10 +19,11 @@ enum class DriverTask {
 ///
 ///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
 ///
-/// The reaction time is reaction_time_s + slow_reaction_time_s (1 - A). The size of the errors
-/// follows SUMO's driver state (MSDriverState). The factor of the relative gap error is 0.75. The
-/// factor of the closing speed's error is 0.15 per second, times the gap. Each factor is multiplied
-/// by a random process with standard deviation 0.2 (1 - A).
+/// The reaction time is reaction_time_s + slow_reaction_time_s (1 - A). The driver's errors of
+/// perception are as large as those of SUMO's driver state (MSDriverState). Each error is a factor
+/// times a random process with the standard deviation 0.2 (1 - A). For the relative gap error, the
+/// factor is 0.75. For the error of the closing speed, the factor is 0.15 per second, times the
+/// gap.
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.
@@ -34,7 +35,7 @@ class Awareness {
     if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
   }
 
-  /// A at the end of this duration, in which the driver has this task.
+  /// Advances A by `duration_s`, in which the driver has this task. Returns A at the end.
   double Step(DriverTask task, double duration_s) {
     if (task == DriverTask::kDrives) {
       awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);
@@ -56,7 +57,7 @@ class Awareness {
     return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - least);
   }
 
-  /// V_s and r_c of human_driver.h, as in SUMO's driver state.
+  /// The sizes V_s and r_c of the errors in human_driver.h, as in SUMO's driver state.
   double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
   double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
 

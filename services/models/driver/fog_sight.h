@@ -22,8 +22,8 @@ enum class Seen { kOutline, kLamps, kNothing };
 /// lamp_distance_factor kappa. W is body_width_m if the outline is visible, and lamp_separation_m
 /// if only the lamps are visible. If the closing is not visible, the driver perceives v_l = v and
 /// acceleration 0 of the car ahead. The perceived distance is d up to clear_share d_o, and kappa d
-/// from d_o on. Between these distances the factor grows linearly from 1 to kappa. d_l = (2 /
-/// sigma) W_0(sigma / 2 sqrt(I / E_t)) with Lambert's W.
+/// from d_o on. Between these distances the factor grows linearly from 1 to kappa. The range of the
+/// lamps is d_l = (2 / sigma) W_0(sigma / 2 sqrt(I / E_t)), with Lambert's W.
 class FogSight {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

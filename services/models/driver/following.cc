@@ -11,7 +11,7 @@ namespace {
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
 
 // Upper limit of the exponent in z^(2 a / a_free). The exponent goes to infinity as v goes to v_0.
-// A z below 1, raised to this limit, is nearly 0.
+// The limit applies only if a_free is below 2 % of a, so its effect on the acceleration is small.
 constexpr double kLargestExponent = 100;
 
 }  // namespace
@@ -62,7 +62,7 @@ double Following::ConstantAccelerationHeuristic(double speed_mps, const CarAhead
   const double closing = speed_mps - lead;
   const double denominator = lead * lead - 2.0 * s * a;
   if (lead * closing <= -2.0 * s * a && denominator > 0.0) {
-    return speed_mps * speed_mps * a / denominator;  // the car ahead stands when the driver stops
+    return speed_mps * speed_mps * a / denominator;  // the car ahead stops before the driver
   }
   const double approach = std::max(closing, 0.0);
   return a - approach * approach / (2.0 * s);

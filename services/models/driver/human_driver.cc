@@ -88,8 +88,8 @@ Situation HumanDriver::Remembered(double reaction_time_s) const {
   const auto steps = static_cast<std::size_t>(whole);
   const Situation& newer = SeenAgo(steps);
   const Situation& older = SeenAgo(steps + 1);
-  // If a car appeared or vanished between the two situations, the situation that is nearer in time
-  // decides whether there is a car ahead.
+  // If a car appeared or vanished between the two situations, the situation that is nearer to the
+  // wanted time decides whether there is a car ahead.
   Situation then = rest < 0.5 ? newer : older;
   then.speed_mps = Mix(newer.speed_mps, older.speed_mps, rest);
   then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, rest);

@@ -26,10 +26,10 @@ struct Attention {
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
 ///     v_l,est = v_l - s r_c w_l
 ///
-/// s is the gap, v the own speed, v_l the speed of the car ahead, and a the own acceleration. The
-/// driver acts on the situation at the time t - T_r, interpolated linearly between two steps. A
-/// driver who anticipates assumes that the own acceleration and the closing speed have been
-/// constant since then:
+/// s is the gap, v the own speed, v_l the speed of the car ahead, and a the own acceleration. V_s
+/// and r_c are the sizes of the errors (Attention). At the time t, the driver acts on the situation
+/// at t - T_r, interpolated linearly between two steps. A driver who anticipates assumes that the
+/// own acceleration and the closing speed have been constant since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
 ///     v_l' = v' - (v - v_l,est)                    with all values at the time t - T_r

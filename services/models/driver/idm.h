@@ -11,10 +11,12 @@ namespace fogline::models {
 ///     s* = s_0 + max(0, v T + v dv / (2 sqrt(a_max b)))
 ///
 /// with v the own speed, dv = v - v_preceding the closing speed and s the gap, bumper to bumper.
-/// The parameters are fields of DriverSection: a_max = max_acceleration_mps2, b =
-/// comfortable_deceleration_mps2, v_0 = desired_speed_mps, delta = exponent, s_0 = standstill_m, T
-/// = headway_s. a = 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta) behind a car of equal
-/// speed.
+/// The parameters are fields of DriverSection:
+///
+///     a_max = max_acceleration_mps2      b = comfortable_deceleration_mps2      delta = exponent
+///     v_0 = desired_speed_mps            s_0 = standstill_m                     T = headway_s
+///
+/// Behind a car of equal speed, a is 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta).
 ///
 /// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2. The
 /// formula has no value for s <= 0, and the result is then this limit.

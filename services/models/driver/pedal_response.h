@@ -20,7 +20,7 @@ class PedalResponse {
  public:
   explicit PedalResponse(const PersonSection& person) : person_(person) {}
 
-  /// @param throttle and brake are taken as the nearest value in [0, 1]
+  /// @param throttle, brake a value outside [0, 1] counts as the nearer limit
   /// @return m/s2
   double Acceleration(double throttle, double brake) const {
     const double drive = Share(throttle);

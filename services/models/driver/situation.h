@@ -11,7 +11,7 @@ struct CarAhead {
   double acceleration_mps2 = 0;
 };
 
-/// Truth or perception of one driver at one moment.
+/// The true situation of one driver at one moment, or the situation that the driver perceives.
 struct Situation {
   double speed_mps = 0;  // speed of the own car
   double acceleration_mps2 = 0;

@@ -17,9 +17,10 @@ namespace fogline::models {
 ///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
 /// mean, std and P(late) are mean_s, std_s and late_probability of TakeOverParameters. Z is a
-/// standard normal number, and z is the same number in SUMO and by lead. SUMO (MSDevice_ToC) draws
-/// again if a value is negative. After 100 negative values, SUMO takes the mean. So P(T > t) is
-/// larger than P(late) for a lead time of minutes. SUMO itself has a table for (t - m) / z.
+/// standard normal number. z is defined by P(Z > z) = P(late) in both models that use it. SUMO
+/// (MSDevice_ToC) draws again if a value is negative. After 100 negative values, SUMO takes the
+/// mean. For a lead time of minutes, negative values are frequent, so P(T > t) is larger than
+/// P(late). SUMO itself has a table in place of the formula (t - m) / z.
 class TakeOverTime {
  public:
   /// @param lead_s t, above 0

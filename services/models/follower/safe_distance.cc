@@ -8,7 +8,7 @@ namespace {
 
 double Square(double x) { return x * x; }
 
-// 0 from `safe_m` on, 1 below `unsafe_m`, linear between them.
+// Degree of danger of a distance: 0 from `safe_m` on, 1 below `unsafe_m`, linear between them.
 double Membership(double distance_m, double safe_m, double unsafe_m) {
   if (distance_m >= safe_m) return 0.0;
   if (distance_m < unsafe_m) return 1.0;

@@ -43,13 +43,13 @@ double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
 /// Critical fuzzy surrogate CFS. CFS assumes that the car ahead keeps its speed, and that the own
 /// acceleration a, at least -b_c, stays constant during the response. The closing speed after the
-/// response is c' = v + a rho - v_l. CFS is computed like PFS, but with the gap s in place of s -
-/// d_1, and with
+/// response is c' = v + a rho - v_l. If v <= v_l, CFS is 0. Otherwise CFS is computed like PFS, but
+/// with the gap s in place of the distance s - d_1, and with
 ///
-///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)         d_unsafe: with b_h
+///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)      d_unsafe: b_h in place of b_c
 ///
-/// If c' < 0, the car already brakes enough to end the closing. CFS is then 1 if s < (v - v_l)^2 /
-/// (2 |a_0|), otherwise 0. a_0 is the own acceleration without the limit -b_c.
+/// If c' < 0, the car already brakes enough to end the closing. CFS is then 1 if s is below
+/// (v - v_l)^2 / (2 |a_0|), otherwise 0. a_0 is the own acceleration without the limit -b_c.
 double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
 /// Deceleration in m/s2 that the model demands, 0 if none: b_c + CFS (b_h - b_c) if CFS > 0,

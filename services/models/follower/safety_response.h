@@ -25,12 +25,12 @@ struct ResponseParameters {
   double lead_braking_mps2 = 5.0;   // the car ahead brakes hard above this deceleration
 };
 
-/// After the danger appears, the driver does nothing for the perception time. Then the driver's
-/// foot is off the throttle for the delay. After the delay, the braking grows at the jerk limit to
+/// After the danger appears, the driver does nothing for the perception time. Then, for the delay,
+/// the driver's foot is off the throttle. After the delay, the braking grows at the jerk limit to
 /// the deceleration that the model demands:
 ///
-/// - reference human: full braking from the beginning of the danger (ResponseParameters) until the
-///   closing speed is 0
+/// - reference human: full braking while there is danger (ResponseParameters). When danger has
+///   begun, it lasts at least until the closing speed is 0.
 /// - RSS: full braking while the gap is below the safe distance. The response time rho of RSS
 ///   replaces the perception time, and there is no delay.
 /// - fuzzy safety model: FuzzyDeceleration(). The response time of this model replaces the

@@ -16,11 +16,13 @@ struct StyleParameters {
   HumanParameters human;
 };
 
-/// Time gaps: openpilot's aggressive, standard and relaxed following, 1.25, 1.45 and 1.75 s.
-/// Desired speeds, accelerations, decelerations and standstill gaps: after the driver classes of
-/// Kesting, Treiber & Helbing, Agents for Traffic Simulation, 2009 (120 km/h, 1.4 and 2.0 m/s2, 2 m
-/// for the normal class; the table was not available). Reaction times: our estimate, in the range
-/// of 0.5 to 1.1 s that the authors of the Human Driver Model examine.
+/// The parameters of a style, from these sources:
+/// - Time gaps of 1.25, 1.45 and 1.75 s: openpilot's aggressive, standard and relaxed following.
+/// - Desired speeds, accelerations, decelerations and standstill gaps: after the driver classes of
+///   Kesting, Treiber & Helbing, Agents for Traffic Simulation, 2009 (for the normal class
+///   120 km/h, 1.4 and 2.0 m/s2, 2 m; the table was not available).
+/// - Reaction times: our estimate, in the range of 0.5 to 1.1 s that the authors of the Human
+///   Driver Model examine.
 StyleParameters ParametersOf(Style style);
 
 /// Relative frequency of each style. Every frequency is at least 0, and at least one is above 0.

@@ -6,8 +6,8 @@
 namespace fogline::models {
 namespace {
 
-// Factor on the braking of the last step. Without this factor rounding would leave a speed of 1e-17
-// m/s.
+// Factor on the braking, so that the car really stands after the last step. Without this factor,
+// rounding would leave a speed of 1e-17 m/s.
 constexpr double kToRest = 1.0 + 1e-12;
 
 }  // namespace

@@ -13,10 +13,11 @@ namespace fogline::models {
 ///     a'   = max(a - j h, -d, -r(v))           but at most a + j h
 ///     r(v) = v/(n h) + (n - 1) j h/2          n = ceil((sqrt(1 + 8 v/(j h^2)) - 1)/2)
 ///
-/// r(v) is the braking that can still be released at the rate j, one step at a time, so that the
-/// car comes to rest exactly at the end of a step. In n steps, the brakings r, r - j h, ... reduce
-/// the speed by v, and the last braking is at most j h. So the end is as smooth as the beginning.
-/// Two cases exceed a limit, each as little as possible:
+/// r(v) is the strongest braking with which the car can still come to rest smoothly: from then on,
+/// the braking falls by j h in each step, and the car comes to rest exactly at the end of a step.
+/// In n steps, the brakings r, r - j h, ... reduce the speed by v, and the last braking is at most
+/// j h. So the end is as smooth as the beginning. In two cases a limit is exceeded, but as little
+/// as possible:
 ///
 /// - A car that brakes harder than d at the start releases the brake at the rate j, down to d.
 /// - A car that brakes harder than r(v) at the start (a car that is about to stand) stops before

@@ -13,7 +13,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// The lanes inside of the junction between `lane` and `next`, and `next` itself; empty if no
-/// connection leads there. Each of these lanes has one connection onward.
+/// connection leads there. Each lane inside of a junction has only one connection onward.
 Names Through(const std::string& lane, const std::string& next) {
   for (const libsumo::TraCIConnection& link : libsumo::Lane::getLinks(lane)) {
     if (link.approachedLane != next) continue;
@@ -49,10 +49,10 @@ Names LanesOf(const std::string& edge) {
   return lanes;
 }
 
-/// Finds the longest way from a lane along edges. Of equally long ways, the class takes the way on
-/// the rightmost lanes. If each lane leads to several lanes, there are very many ways. So the class
-/// searches each lane of an edge only once. This is sufficient, because the longest way from a lane
-/// does not depend on the way to this lane.
+/// Finds the longest way from a lane along edges: the way with the most lanes. Of equally long
+/// ways, the class takes the way on the rightmost lanes. If each lane leads to several lanes, there
+/// are very many ways. So the class searches each lane of an edge only once. This is sufficient,
+/// because the longest way from a lane does not depend on the way to this lane.
 class LongestWay {
  public:
   /// Function that returns the lanes from `lane` to `next`, which is a lane of the next edge.
@@ -75,10 +75,10 @@ class LongestWay {
  private:
   struct Way {
     std::size_t lanes = 0;  // number of its lanes
-    Names begin;            // lanes of the way, up to the lane of the next edge
+    Names begin;            // first lanes of the way, up to the lane of the next edge
   };
 
-  /// The way from a lane along the edges from `edge` on.
+  /// The longest way from a lane along the edges from `edge` on.
   const Way& Find(const std::string& lane, std::size_t edge) {
     const auto [found, is_new] = found_.try_emplace({lane, edge});
     Way& longest = found->second;

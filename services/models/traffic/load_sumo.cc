@@ -17,7 +17,7 @@ namespace {
 constexpr double kMicrosPerSecond = 1e6;
 constexpr std::int64_t kMicrosPerMilli = 1000;
 
-/// A function of the module. The module stays loaded until the process ends, because SUMO's
+/// Finds a function of the module. The module stays loaded until the process ends, because SUMO's
 /// libraries do not expect to be unloaded.
 template <class Function>
 Function* Find(const std::filesystem::path& module, const char* name) {

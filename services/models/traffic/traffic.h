@@ -29,16 +29,17 @@ struct LeaderInTraffic {
   double rear_m = 0;  // position of its rear bumper
   double speed_mps = 0;
   double acceleration_mps2 = 0;
-  bool changed = false;  // whether another car was ahead in the step before
+  bool changed = false;  // whether another car, or no car, was ahead in the step before
 };
 
-/// The other simulator during a run. All functions take the cars of Fogline in the order from the
-/// front: the host, then the following cars.
+/// The other simulator during a run. Begin() and Step() take the cars of Fogline in the order from
+/// the front: the host, then the following cars.
 class Traffic {
  public:
   virtual ~Traffic() = default;
 
-  /// Begins at step 0, also after other runs: equal setups and equal cars then give equal results.
+  /// Begins a run at step 0. Earlier runs have no effect: equal setups and equal cars give equal
+  /// results. Returns the car ahead of the host.
   /// @param cars the host is at 0 m
   /// @throws InputError "/lead/sumo/...: message" if the cars have no place in the traffic
   virtual LeaderInTraffic Begin(std::span<const Motion> cars) = 0;

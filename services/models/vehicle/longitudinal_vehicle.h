@@ -50,7 +50,8 @@ class LongitudinalVehicle {
 
   /// Advances by one step of step_s with this command. Returns an acceleration that is constant
   /// over the step, or up to the moment at which the car comes to rest. Advance(now, result,
-  /// step_s) then gives the car's motion at the end of the step, in any number of substeps.
+  /// step_s) then gives the car's motion at the end of the step. Several calls of Advance() for
+  /// parts of the step give the same motion.
   /// @param now position and speed of the car, as Advance() has computed them
   double Step(double command_mps2, const Motion& now);
 

@@ -7,9 +7,9 @@
 namespace fogline::models {
 namespace {
 
-// Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, infinite if there is no such t; gap >
-// 0. The function uses the form of the root that adds numbers of the same sign. So there is no
-// cancellation.
+// Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, where gap is above 0. The result is
+// infinite if there is no such t. The function uses the form of the root that adds numbers of the
+// same sign. So there is no cancellation.
 double FirstRoot(double gap, double rate, double curvature) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double discriminant = rate * rate - 2.0 * curvature * gap;

@@ -54,12 +54,13 @@ struct VehicleParameters {
   /// Akasaka 2018.
   double brake_lag_s = 0.193;
 
-  /// Half the width of the band of demands around 0 in which the foot does not change pedals, as
-  /// force per m_eff in m/s2, at least 0. Estimate: the whole band is 0.1 to 0.2.
+  /// Half the width of the pedals' dead band, as force per m_eff in m/s2, at least 0. While the
+  /// demanded force is within this band around 0, the foot does not change pedals (pedals.h).
+  /// Estimate: the whole band is 0.1 to 0.2 m/s2 wide.
   double pedal_dead_band_mps2 = 0.1;
 };
 
-/// The defaults.
+/// A sedan: all parameters have their defaults.
 inline constexpr VehicleParameters kSedan{};
 
 /// A light car. m is the mass of the BMW 320i in the CommonRoad vehicle models (vehicle 2). P
@@ -94,7 +95,7 @@ inline constexpr VehicleParameters kTruck{
     .brake_lag_s = 0.3,
 };
 
-/// Parameters of a car of the scenario.
+/// The parameters of this kind of car.
 constexpr const VehicleParameters& ParametersOf(CarKind car) {
   switch (car) {
     case CarKind::kCompact:

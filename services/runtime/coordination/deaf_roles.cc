@@ -21,8 +21,8 @@ constexpr Duration kSteady = milliseconds(600);
 constexpr std::int64_t kSureMessages = 10;
 // The step of a producer is estimated from its STATUS and the time since then. A role counts as
 // ahead of the producer if it is more than this many steps beyond the estimate. The producer itself
-// may be beyond the estimate, because its STATUS takes up to 100 ms to arrive. This is the time of
-// five steps at 50 Hz.
+// may be beyond the estimate, because its STATUS takes up to 100 ms to arrive. In 100 ms a run at
+// 50 Hz makes five steps.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace
@@ -49,12 +49,14 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
     // The role measures the age of an input on its own clock. The age grows until a message comes,
     // and does not depend on the time at which the STATUS is read. Until its first message
-    // (INPUT_AWAITED) an input has no age, so the time since the role's previous STATUS is used.
+    // (INPUT_AWAITED) an input has no age. Then the silence is the time since the role's previous
+    // STATUS.
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;
     // Late messages show that the role receives the channel. But if the role is ahead of the
-    // producer, all messages come late and the role can use none of them. Then they do not count.
+    // producer, all messages come late and the role can use none of them. In this case late
+    // messages do not count.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
     const std::int64_t published = speakers_[static_cast<std::size_t>(from)].ticks;
     const bool came = !awaited && age < since;

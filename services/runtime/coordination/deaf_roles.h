@@ -28,8 +28,8 @@ std::string Text(const Deafness& deaf);
 
 class DeafRoles {
  public:
-  /// @param period of the steps on the wall clock; 0: the run is not in real time, and no role
-  ///     counts as deaf
+  /// @param period duration of a step on the wall clock; 0 if the run is not in real time: then no
+  ///     role counts as deaf
   explicit DeafRoles(Duration period);
 
   /// Evaluates an accepted STATUS of the role.
@@ -50,21 +50,22 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    std::int64_t published = 0;  // the producer's step count at the last message that came
+    std::int64_t published = 0;  // the producer's `ticks` when the last message came
     Duration unsure{};           // time to add to `missed` when the producer reports a further step
   };
   struct Speaker {
     TimePoint heard{};
     std::int64_t step = -1;
-    std::int64_t ticks = 0;  // steps that its process has computed; 0 after a restart
+    std::int64_t ticks = 0;  // steps that the role's process has computed; 0 after a restart
     TimePoint advanced{};    // when a STATUS first showed `step`
     std::array<Ear, kNumChannels> ears{};
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
   /// Whether the producer has published so many messages that even a bad network would not lose all
-  /// of them. The messages since the last one that came are counted. They are enough if they are at
-  /// least kSureMessages, or at least half of the messages that are due in the missed time.
+  /// of them. Only the messages after the last one that the role received are counted. Their number
+  /// is enough if it is at least kSureMessages, or at least half of the number of messages that are
+  /// due in the time `ear.missed`.
   bool IsSure(const Ear& ear, Role from) const;
   /// Whether the role's STATUS messages show that the role computes one step after another.
   bool Computes(Role role, TimePoint now) const;

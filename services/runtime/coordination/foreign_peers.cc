@@ -50,7 +50,7 @@ std::vector<ForeignPeer> ForeignPeers::known() const {
   for (const Watched& one : watched_) told.push_back(&one);
   std::ranges::stable_sort(told, std::greater{}, &Watched::heard);
   told.resize(std::min(told.size(), kMax));
-  std::ranges::sort(told);  // into the order of watched_
+  std::ranges::sort(told);  // by address, which is the order in watched_
   std::vector<ForeignPeer> known;
   for (const Watched* one : told) known.push_back(one->peer);
   return known;

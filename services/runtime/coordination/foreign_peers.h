@@ -22,9 +22,9 @@ struct ForeignPeer {
 /// Returns a text such as "fusion (pid 4711 on lab2) of run 123".
 std::string Describe(const ForeignPeer& peer);
 
-/// The foreign processes that sent the most STATUS messages. A flood of invented names does not
-/// fill the memory, and does not hide a process that continues to send. If a process comes after
-/// kMaxWatched others, the process with the fewest STATUS messages is forgotten.
+/// The foreign processes that sent the most STATUS messages. At most kMaxWatched processes are
+/// remembered: a further process replaces the process with the fewest STATUS messages. So a flood
+/// of invented names does not fill the memory, and does not hide a process that continues to send.
 class ForeignPeers {
  public:
   /// The largest number of processes that are reported.

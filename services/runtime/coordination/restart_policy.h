@@ -13,7 +13,8 @@ namespace fogline::runtime {
 class RestartPolicy {
  public:
   /// The shortest and the longest wait before a restart. The wait doubles with each restart after
-  /// which the run makes no progress. The values are those of procman, LCM's process manager.
+  /// which the run makes no progress. The values are those of procman, a process manager for LCM
+  /// systems.
   static constexpr Duration kShortest = milliseconds(10);
   static constexpr Duration kLongest = milliseconds(1000);
 

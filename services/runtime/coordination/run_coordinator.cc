@@ -71,7 +71,8 @@ TimePoint RunCoordinator::Poll(TimePoint now) {
     going_since_ = now;
   }
   // A recorder that reads a long log reports its progress. So the join limit counts from the last
-  // progress. A person starts the external roles, and the runner limits the wait for them.
+  // progress. The wait for external roles does not count here, because a person starts these roles.
+  // The runner limits this wait (--wait).
   if (phase_ == Phase::kJoining && !Awaited(now).empty()) awaited_ = now;
   if (const Duration joining = HeldAgainst(std::max({began_, progressed_, awaited_}), now);
       phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
@@ -222,7 +223,7 @@ void RunCoordinator::OnStatus(const status_t& heard) {
   const TimePoint now = Clock::now();
   if (!IsPossible(heard) || heard.header.step > NewestPossible(now))
     return Refuse(&status_t::out_of_window);
-  status_t status = heard;  // with texts that are safe to print
+  status_t status = heard;  // a copy with texts that are safe to print
   status.host = EscapeControls(heard.host);
   status.error = EscapeControls(heard.error);
   status.send_error = EscapeControls(heard.send_error);

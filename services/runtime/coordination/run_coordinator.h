@@ -32,16 +32,17 @@ struct RunCoordinatorOptions {
   std::int64_t steps = kMaxStep;  // number of steps of the scenario
   std::int64_t progress = -1;     // last step that is known to have begun
   // The sequence numbers of this runner's RUN messages begin above this number. An earlier runner
-  // of the same run has used only smaller numbers.
+  // of the same run has not used higher numbers.
   std::int64_t sequence = 0;
   double pace = 0;        // simulated seconds per second; 0: no limit
   bool realtime = false;  // whether this is a run in real time
   Duration period{};      // duration of a step in real time, on the wall clock
-  // Longest wait until all roles are ready; 0: no limit. It counts from the moment at which no
-  // external role is awaited.
+  // Longest wait until all roles are ready; 0: no limit. The time counts from the latest of three
+  // moments: the beginning, the last progress, and the last moment at which an external role was
+  // awaited.
   Duration join_limit{};
   Duration prepare_limit{};                   // replaces join_limit while AllPrepare() is true
-  Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
+  Duration stall_limit = milliseconds(4000);  // longest time in which no role completes a step
   std::vector<Role> external;                 // roles that are started elsewhere
   int restarts = 0;                           // largest number of restarts of each external role
   RoleBuilds builds{};                        // expected builds of the roles
@@ -89,8 +90,8 @@ class RunCoordinator {
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
-  /// Text such as "while waiting for fusion" if roles have not reported ready before the run
-  /// begins; otherwise as Where().
+  /// A text such as "while waiting for fusion" if the run has not begun and roles have not reported
+  /// ready; otherwise the text of Where().
   std::string WhereOrWaiting() const;
   /// External roles that the run waits for: roles that are not ready, and roles that send nothing
   /// while the run goes on.
@@ -128,10 +129,10 @@ class RunCoordinator {
   /// about a stall, or about roles that are not ready, contain this reason.
   /// @param why the reason; "" if there is none
   void Hinder(Role role, std::string why);
-  /// Notes that the runner has started the role as this process, for the first time or again.
-  /// @param launch kTriedAgain: the process before it has ended before its first STATUS. The launch
-  /// is
-  ///     then no progress of the run, and the hindrance of the role stays.
+  /// Notes that the runner has started this process for the role, for the first time or again.
+  /// @param launch kTriedAgain if the previous process has ended before its first STATUS. The
+  ///     launch then does not count as progress of the run, and the role keeps its hindrance
+  ///     (Hinder()).
   enum class Launch { kUsual, kTriedAgain };
   void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "",
                 Launch launch = Launch::kUsual);
@@ -143,7 +144,7 @@ class RunCoordinator {
   /// Whether a STATUS of any process of the role has been accepted.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
-  /// A process that the runner has started.
+  /// A process: its machine and its pid.
   struct Process {
     std::string host;
     std::int32_t pid = 0;
@@ -162,7 +163,7 @@ class RunCoordinator {
     TimePoint rival_heard{};
     // The last process to which the role was refused. If the runner has started the role, any other
     // process is refused immediately. If the role is external, RUN first names the process that has
-    // the role. A second process that still claims the role after this is refused.
+    // the role. Another process is refused if it still claims the role after 1 s.
     std::optional<status_t> refused;
     // `undead` is the time at which an instance that counts as dead began to send again;
     // `undead_heard` is the time of its last STATUS.
@@ -200,7 +201,7 @@ class RunCoordinator {
   /// the run.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
-  /// The process with this pid on `host`; "" is this machine.
+  /// The process with this pid on `host`. An empty `host` means this machine.
   Process ProcessOn(const std::string& host, std::int32_t pid) const {
     return {.host = host.empty() ? host_ : host, .pid = pid};
   }
@@ -249,7 +250,7 @@ class RunCoordinator {
   TimePoint began_;
   OwnPauses pauses_;
   TimePoint announce_at_{};
-  std::size_t next_part_ = 0;  // next part of the scenario for programs that only listen
+  std::size_t next_part_ = 0;  // scenario part in the next RUN, for programs that only listen
   TimePoint parts_at_{};
   std::optional<TimePoint> ask_recorder_at_;  // when to ask for the recorder's last report
   std::int64_t sequence_;                     // sequence number of the last RUN

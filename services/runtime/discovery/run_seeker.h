@@ -21,7 +21,7 @@ class RunSeeker {
 
   /// Looks for a run to join. Call it while the role has no run, or its runner is silent.
   /// @return the run to join now: the newest run that waits for this role and was not tried in
-  ///     vain; nullopt if there is no such run
+  ///     vain; nullopt if there is no such run, or if the role already tries to join a run
   std::optional<Announcement> Look(TimePoint now);
 
   /// Whether the role has gone to the network of an announced run.

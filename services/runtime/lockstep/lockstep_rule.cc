@@ -139,8 +139,8 @@ StepRange LockstepRule::Lacking(const Input& input, std::int64_t first, std::int
     while (first <= last && input.ring.Has(last)) --last;
     return {.first = first, .count = last - first + 1};
   }
-  // Asks only for the first missing step and the missing steps directly after it. Later missing
-  // steps may still be on their way.
+  // Asks only for step `first`, if it is missing, and for the missing steps directly after it.
+  // Later missing steps may still be on their way.
   std::int64_t count = 0;
   while (first + count <= last && !input.ring.Has(first + count)) ++count;
   return {.first = first, .count = count};

@@ -26,7 +26,7 @@ namespace fogline::runtime {
 
 class LockstepRule final : public FireRule {
  public:
-  /// @param gate of the role that begins the steps; nullptr for every other role
+  /// @param gate the gate of the role that begins the steps; nullptr for every other role
   explicit LockstepRule(Parts& parts, StepGate* gate = nullptr);
 
   void OnGo(const run_t& run, TimePoint now) override;
@@ -52,8 +52,8 @@ class LockstepRule final : public FireRule {
   TimePoint PollGate(TimePoint now);
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
-  /// The range of steps that one request asks for. It lies between `first` and `last`, and contains
-  /// steps that the input lacks.
+  /// The steps that one request asks for. They are between `first` and `last`, and begin with a
+  /// step that the input lacks. `count` is 0 if there is nothing to ask for.
   StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
   /// Whether this role is behind the run, so that it asks for many steps at a time.
   bool CatchingUp() const { return next() <= late_; }

@@ -58,8 +58,9 @@ class RetryTimer {
   static constexpr int kSteps = 4;
   static constexpr Duration kShortest = milliseconds(2);
   static constexpr Duration kLongest = milliseconds(10);
-  // Inverse weights of the newest step in the smoothed duration of a step. Repairs of other roles
-  // make steps longer, too, so a shorter step has the larger weight.
+  // A new step changes the smoothed duration of a step by a part of the difference: by 1/kDown if
+  // the new step was shorter, and by 1/kUp if it was longer. Longer steps count less, because
+  // repairs of other roles make steps longer, too.
   static constexpr int kDown = 2;
   static constexpr int kUp = 64;
 

@@ -31,8 +31,8 @@ class Outputs {
   /// stored.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
-  /// The limit for answers to requests. It counts answers with STATUS, and answers with steps
-  /// before the two newest steps.
+  /// The limit for answers to requests. It counts answers with STATUS, and answers with steps that
+  /// are older than the two newest steps.
   RateLimiter& limiter() { return limiter_; }
 
  private:

@@ -77,7 +77,7 @@ void OwnStatus::Publish() {
   const Bus::Unverified unverified = bus_.TakeUnverified();
   message_.not_signed += unverified.not_signed;
   message_.badly_signed += unverified.badly_signed;
-  if (now >= use_at_) {  // this system call takes longer than some steps
+  if (now >= use_at_) {  // not in every STATUS: this call takes longer than some steps
     use_at_ = now + kHeartbeat;
     const ProcessUse use = MeasureThisProcess();
     message_.cpu_ms = use.cpu_ms;

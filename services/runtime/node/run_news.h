@@ -17,7 +17,7 @@ struct RunNews {
   std::int64_t progress = -1;    // last step that is known to have begun; -1: none
   std::int8_t minimal_risk = 0;  // cars in a minimal risk manoeuvre, as in status_t
   ScenarioParts parts;
-  // Known when all parts of the scenario have come:
+  // The next members are known when all parts of the scenario have come.
   std::int64_t steps = kMaxStep;
   bool realtime = false;
   double pace = 0;  // simulated seconds per second, 0 if there is no limit

@@ -29,9 +29,9 @@ inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instanc
 class RunnerWatch {
  public:
   /// A runner sends RUN five times a second. If no RUN comes for this time (ten missing messages),
-  /// a role joins another run that waits for the role. Only an overloaded machine holds up a runner
-  /// for so long. If a person stops a runner (Ctrl-Z), the role may join another run before the
-  /// runner continues.
+  /// a role joins another run that waits for the role. A living runner is silent for so long only
+  /// if its machine is overloaded, or if a person stops it (Ctrl-Z). In these cases the role may
+  /// join another run before the runner continues.
   static constexpr Duration kSilent = milliseconds(2000);
   /// If no other run waits for the role, the role leaves its run after the sum of the stall limit
   /// and this time. After the stall limit the run has ended, except if the runner itself is paused

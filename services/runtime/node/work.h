@@ -33,8 +33,8 @@ class Work {
   /// have come.
   /// @throws std::exception that says what is wrong
   virtual void Compute(std::int64_t step) = 0;
-  /// Does the work that is due apart from the steps. Called before the rule's Poll(), while the
-  /// role is READY or RUNNING. @return the latest time for the next call
+  /// Does work that is due but does not belong to a step. Called before the rule's Poll(), while
+  /// the role is READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
   /// Called before every STATUS. The role finishes the work that the STATUS reports as done. For
   /// example, the recorder flushes its log.

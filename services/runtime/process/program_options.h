@@ -35,16 +35,16 @@ void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 /// of the command line is similar.
 std::string OptionMeant(const CLI::App& command, const std::string& mistyped);
 
-/// What is wrong with a command line, in plain words where CLI11 has its own, such as `--force
-/// takes no value`. The text may have several lines.
+/// Says what is wrong with a command line. Texts of CLI11 that are hard to understand are replaced
+/// by plain words, such as `--force takes no value`. The result may have several lines.
 std::string WhatIsWrong(const CLI::ParseError& error);
 
-/// The options of a program without verbs. Only the source file of this class includes CLI11,
-/// because its headers take seconds to compile. A variable that is given to a function gets its
-/// value in Parse(); its value before Parse() is the default.
+/// The options of a program without verbs. In this library, only the source file of this class
+/// includes CLI11, because CLI11's headers take seconds to compile. A variable that is given to a
+/// function gets its value in Parse(); its value before Parse() is the default.
 class ProgramOptions {
  public:
-  /// @param name of the program, such as "fogline-radar"
+  /// @param name the program's name, such as "fogline-radar"
   /// @param version the text that --version prints
   ProgramOptions(const std::string& name, const std::string& purpose, const std::string& version);
   ~ProgramOptions();

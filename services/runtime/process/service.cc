@@ -70,7 +70,7 @@ class Service {
       const TimePoint now = Clock::now();
       pauses_.Attend(now);
       if (own().released()) {
-        if (arguments_.run_id) break;  // another process has its place in the run
+        if (arguments_.run_id) break;  // another process has the role in this run
         StartOver(now);
       } else if (own().Waits()) {
         WarnOfSignatures();
@@ -104,7 +104,8 @@ class Service {
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
-    // In real time, the first step may come as soon as the role is READY.
+    // In real time, the first step may come as soon as the role is READY. So the process raises its
+    // priority first.
     work_->node().membership().BeforeReady([this] { PreferIfRealtime(); });
   }
 
@@ -127,7 +128,8 @@ class Service {
   }
 
   std::string HowToStartOne() const {
-    // The runner itself starts the recorder and every role with --run-id.
+    // There is no advice for the recorder and for a role with --run-id, because a runner starts
+    // them for its run.
     if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
     const std::string url =
         arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);

@@ -5,8 +5,9 @@
 
 namespace fogline::runtime {
 
-// Returns the index of a duration's cell, 64 e + m. A duration of 64 us or more is rounded down to
-// m 2^e us, where e >= 0 and m is in [64, 128). Below 64 us, e is 0 and m is the duration in us.
+// Returns the index of the cell that counts a duration. The duration is rounded down to m 2^e us,
+// where m and e are whole numbers, and the index is 64 e + m. Below 128 us, e is 0 and m is the
+// duration in us. From 128 us on, e is above 0 and m is in [64, 128).
 std::size_t DurationHistogram::CellOf(std::int64_t us) {
   const auto value = static_cast<std::uint64_t>(us);
   const auto width = static_cast<int>(std::bit_width(value));

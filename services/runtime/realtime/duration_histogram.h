@@ -16,8 +16,8 @@ namespace fogline::runtime {
 /// never too small. Maximum and count are exact. The histogram takes 14 kB, allocates nothing, and
 /// adds a duration in constant time.
 ///
-/// The P2 estimator of Boost.Accumulators is not used, because the error in its tail has no bound.
-/// HdrHistogram in C is not used, because Debian has no package of it.
+/// The P2 estimator of Boost.Accumulators is not used, because its error for high quantiles has no
+/// bound. HdrHistogram in C is not used, because Debian has no package of it.
 class DurationHistogram {
  public:
   /// Counts a duration, in whole microseconds, rounded up. A negative duration counts as 0. A

@@ -97,10 +97,10 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
 }
 
 // Returns the name of the role that stopped publishing; "" if no input is lost or stale. `status`
-// names the first lost (or else stale) input of its role. The search begins with this input. The
-// last STATUS of each other role says which lost inputs keep that role from publishing. No lost
-// input keeps the world from publishing. Only lost channels of the world keep the arbitrator from
-// publishing.
+// names the first lost input of its role, or the first stale input if no input is lost. The search
+// begins with this input. The last STATUS of each other role says which lost inputs keep that role
+// from publishing. No lost input keeps the world from publishing. Only lost channels of the world
+// keep the arbitrator from publishing.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

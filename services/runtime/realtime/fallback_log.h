@@ -21,7 +21,7 @@ struct Fallback {
   std::string role;
   std::string what;     // such as "TRACK, ACC_COMMAND lost: the human drives"
   std::string culprit;  // role that stopped publishing, "" if there is none
-  double age_s = 0;     // age of the role's first lost (or else stale) input
+  double age_s = 0;     // age of the first lost input (if none is lost, of the first stale one)
 
   /// Returns a text such as "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s
   /// ago): the human drives".

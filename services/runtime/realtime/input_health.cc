@@ -15,8 +15,9 @@ InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoin
     : stale_(Periods(section.stale_periods, period)),
       lost_(std::max(stale_, Periods(section.lost_periods, period))),
       recover_steps_(section.recover_steps),
-      // n steps take n - 1 periods. If the first step came late (by up to stale_periods - 1
-      // periods), the n steps take less time by this delay.
+      // From the first to the last of n steps, n - 1 periods pass. If the first step came late,
+      // this time is shorter by the delay. The delay is stale_periods - 1 periods at most, so the
+      // least time is n - stale_periods periods.
       recover_time_(std::max(
           Duration::zero(),
           Periods(static_cast<double>(section.recover_steps) - section.stale_periods, period))),

@@ -26,12 +26,12 @@ namespace fogline::runtime {
 /// the time that they take at the normal rate. So an input does not recover while its sender sends
 /// a backlog after a stop. The input recovers when the sender sends at its normal rate again.
 ///
-/// The loss of an input is detected `lost` periods after its last step. This is at most `lost`
-/// periods after the end of the sender, plus the time until the receiver calls Update() (see
-/// NextChange()).
+/// The loss of an input is detected `lost` periods after its last step. So the time from the end of
+/// the sender to the detection is `lost` periods at most, plus the time until the receiver calls
+/// Update() (see NextChange()).
 class InputHealth {
  public:
-  /// @param period of the steps on the wall clock, above 0
+  /// @param period duration of a step on the wall clock, above 0
   /// @param began the time from which on the input is expected
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
@@ -69,10 +69,10 @@ class InputHealth {
   std::int64_t newest_ = -1;
   TimePoint heard_;
   std::int64_t late_ = 0;
-  // The number of steps in a row that have come in time, and the time at which the first one came.
+  // The number of steps in a row that have come in time, and when the first of them came.
   std::int64_t streak_ = 0;
   TimePoint streak_began_;
-  // The last arrivals: a ring.
+  // The times of the last arrivals, as a ring.
   std::array<TimePoint, kRateSteps> arrivals_{};
   std::size_t num_arrivals_ = 0;
   std::size_t next_arrival_ = 0;

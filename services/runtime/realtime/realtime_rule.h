@@ -1,8 +1,9 @@
 // The rule in real time. The world ticks on the wall clock and does not wait for any role. A role
 // that lacks an input does not ask for it, because the input would come too late. As soon as a
 // newer step is complete, the role leaves the incomplete step out and counts it. If the role's own
-// process was paused, the role then computes every complete step, in order, because filters and the
-// log need all steps. A role does not wait for an input on demand.
+// process was paused, the role then computes every complete step, in order. The log needs all these
+// steps, and so does a role that filters its inputs over time. A role does not wait for an input on
+// demand.
 //
 // This is the rule of most roles. The world (tick_rule.h), the arbitrator (deadline_rule.h) and the
 // recorder have other rules.

@@ -15,9 +15,9 @@ namespace fogline::runtime {
 /// The clock runs with the wall clock while the run goes on. It stops when the next step is overdue
 /// by more than kGrace periods, and continues when a message of the next step comes. If steps were
 /// skipped in between, the clock advances by the periods of these steps, too. A message may also
-/// come late without a pause of the world (a TRUTH that was lost and sent again). The clock then
-/// also stops, until the next message in time corrects it. The clock never goes backwards, and is
-/// never ahead of the wall clock. Before the first step, the clock stands at `began`.
+/// come late without a pause of the world (a TRUTH that was lost and sent again). Then the clock
+/// also stops. The next message that comes in time corrects it. The clock never goes backwards, and
+/// is never ahead of the wall clock. Before the first step, the clock stands at `began`.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)

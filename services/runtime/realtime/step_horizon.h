@@ -20,7 +20,7 @@ namespace fogline::runtime {
 
 class StepHorizon {
  public:
-  /// @param period of the steps on the wall clock, above 0
+  /// @param period duration of a step on the wall clock, above 0
   /// @param slack steps by which the world can be ahead of the bound that the best proof gives
   /// @param remembered a proof counts for this time at least, and for twice this time at most. In
   ///     every interval of this length, at least one proof must come without delay.
@@ -78,7 +78,7 @@ class StepHorizon {
 /// report allows no more.
 class RunHorizon {
  public:
-  /// @param period of the steps on the wall clock, above 0
+  /// @param period duration of a step on the wall clock, above 0
   explicit RunHorizon(Duration period)
       : period_(period),
         heard_(period, kSlack, kHeardPeriods * period),
@@ -112,11 +112,11 @@ class RunHorizon {
   /// The progress that the runner reports is at most this old. In this time a role sends five
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
-  /// How long a message (kHeardPeriods, in periods) or a report of the runner (kToldFor) limits the
-  /// newest possible step. A message may come late because it was sent again. A message that has
-  /// left its producer's ring of kRingSteps steps is not sent again, so no message comes later than
-  /// that. The runner reports old progress while it receives no STATUS. In a run that goes on, this
-  /// lasts less than a minute.
+  /// A message limits the newest possible step for at least kHeardPeriods periods, and a report of
+  /// the runner for at least kToldFor. A message may come late because it was sent again. A message
+  /// that has left its producer's ring of kRingSteps steps is not sent again, so no message comes
+  /// more than kRingSteps periods late. The runner reports old progress while it receives no
+  /// STATUS. In a run that goes on, such a time is shorter than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.

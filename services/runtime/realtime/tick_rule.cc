@@ -15,12 +15,12 @@ constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
 // The first step that a restarted world asks for is this many steps before the known progress.
 constexpr std::int64_t kProgressAge = 8;
-// A tick that is late by more than this share of a period was held up by more than the usual
-// jitter.
+// A tick counts as held up if it is late by more than this share of a period. The usual jitter is
+// smaller.
 constexpr double kHeldUp = 0.05;
 // A tick that was held up waits until the other roles have finished the previous step, but at most
 // this long. The roles usually need a fraction of this time. The next tick comes at least kApart
-// periods later.
+// periods after the tick that was held up.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 

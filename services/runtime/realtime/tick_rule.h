@@ -23,7 +23,7 @@ namespace fogline::runtime {
 
 class TickRule final : public FireRule {
  public:
-  /// Function with which a restarted world continues after the step of `truth`. It computes the
+  /// A function that lets a restarted world continue after the step of `truth`. It computes the
   /// steps that are known to be under way, but does not publish them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 

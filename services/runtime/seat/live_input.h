@@ -11,7 +11,7 @@ namespace fogline::runtime {
 /// that come before the role's first TRUTH have no effect.
 class LiveInput {
  public:
-  /// @param parts of the role, which has joined
+  /// @param parts the parts of a role that has joined
   /// @throws InputError if the run is not in real time
   LiveInput(Parts& parts, const Scenario& scenario);
   LiveInput(const LiveInput&) = delete;  // the bus refers to this object

@@ -51,7 +51,8 @@ class SeatGate {
     std::int64_t instance;
     std::int64_t sequence;
   };
-  /// Most seats whose newest messages are remembered. Our choice: an experiment starts a few.
+  /// The largest number of seats whose newest messages are remembered. Our choice: an experiment
+  /// starts only a few seats.
   static constexpr std::size_t kMostSeats = 64;
 
   /// Whether the message is newer than all earlier ones of its seat. Otherwise it is late or a

@@ -4,7 +4,8 @@
 //
 // With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
 // message. Messages then wait in the kernel's buffer and, on request, in a backlog (KeepBacklog()).
-// LCM then only sends. With mpudpm and memq, LCM also receives.
+// With udpm, LCM only sends. With mpudpm and memq, LCM also receives. With tcpq, LCM is not used
+// (tcpq_client.h).
 #pragma once
 
 #include <cstdint>
@@ -101,8 +102,8 @@ class Bus {
   /// most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
-  /// Whether LCM receives the messages. LCM then stores the name of every channel from which a
-  /// message comes, in about 300 bytes a name.
+  /// Whether LCM receives the messages. If it does, LCM stores the name of every channel from which
+  /// a message comes, in about 300 bytes for each name.
   bool LcmReceives() const { return lcm_ != nullptr && !inbox_; }
 
   /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
@@ -147,8 +148,9 @@ class Bus {
   /// part of the counts.
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
-  /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
-  /// when all earlier messages have been handled.
+  /// This descriptor is readable when Wait(0) would handle a message. With tcpq the bus may read
+  /// several messages from the descriptor at once. So with tcpq, all messages that have come must
+  /// be handled before the caller waits for this descriptor.
   int fd() const { return fd_; }
   /// A count that grows whenever fd() begins to refer to another file. With tcpq this happens when
   /// the relay is lost or comes back, with udpm in KeepBacklog() and in SubscribeAll(). A caller

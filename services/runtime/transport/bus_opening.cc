@@ -39,9 +39,9 @@ void RequireMulticast(const std::string& url) {
   throw InputError(error);
 }
 
-/// @throws InputError, NetworkAway, std::runtime_error that tell why LCM cannot open the network
+/// @throws InputError, NetworkAway, std::runtime_error that say why LCM cannot open the network
 [[noreturn]] void FailToOpen(const std::string& url) {
-  ThrowIfExhausted(LackOfDescriptors(), url);  // LCM does not say why
+  ThrowIfExhausted(LackOfDescriptors(), url);  // LCM does not say why it failed
   RequireMulticast(url);                       // the route may have vanished meanwhile
   throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
 }
@@ -60,7 +60,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(IsInMemor
   }
   // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
-  // LCM would print a line of its own, and open some of the wrong URLs.
+  // For a wrong URL, LCM would print a line of its own. LCM would even open some wrong URLs.
   if (const std::string why = WhyWrongUrl(url); !why.empty()) {
     throw InputError(fmt::format("error: {}: {}", url, why));
   }

@@ -22,7 +22,8 @@ int ReceiveBuffer(int socket) {
 }
 
 int LackOfDescriptors() {
-  // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test.
+  // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test. So 16
+  // free descriptors are enough.
   std::array<int, 16> descriptors{};
   int error = 0;
   for (int& descriptor : descriptors) {

@@ -56,7 +56,7 @@ LcmSockets::Reach ReachOf(const std::string& url);
 /// loses its groups.
 class GroupMembership {
  public:
-  /// @param socket has just joined the group on the interface of the route
+  /// @param socket a socket that has just joined the group on the interface of the route
   GroupMembership(int socket, const std::string& url);
   /// Joins the group again, on the interface of the current route, if the route leads to another
   /// interface or the interface has lost the group. The socket first leaves the group on the

@@ -77,7 +77,7 @@ std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   if (!ParseAddress(address.group)) {
     return fmt::format("{} is no IPv4 address in numbers", QuoteShort(address.group));
   }
-  // LCM would send to port 0.
+  // Without a port after the address, LCM would send to port 0.
   if (colon == std::string_view::npos) return "the port after the address is missing";
   const std::string_view text = place.substr(colon + 1);
   const int port = ReadNumber(text).value_or(0);

@@ -15,8 +15,8 @@ inline constexpr std::string_view kLcmDefaultUrl = "udpm://239.255.76.67:7667?tt
 /// $LCM_DEFAULT_URL, which LCM's own programs read, too; nullopt if it is unset or empty.
 std::optional<std::string> UrlOfEnvironment();
 
-/// The network of a program: the first of these three URLs that is not empty. They are the URL from
-/// the command line (`given`), $LCM_DEFAULT_URL, and LCM's default address.
+/// The network of a program: the URL from the command line (`given`); if this is empty,
+/// $LCM_DEFAULT_URL; if this is unset or empty, LCM's default address.
 std::string NetworkUrl(const std::string& given);
 
 /// The network on which programs without a URL listen, and on which runs announce themselves
@@ -53,8 +53,8 @@ MulticastAddress MulticastAddressOf(std::string_view url);
 /// LCM does. LCM ignores unknown options, also a mistyped ttl, and it reads 010 as 8.
 std::string WhyWrongUrl(std::string_view url);
 
-/// @param source of the URL, such as "--lcm-url". @throws InputError that names the source, if
-///     WhyWrongUrl() finds something
+/// @param source the source of the URL, such as "--lcm-url"
+/// @throws InputError that names the source, if WhyWrongUrl() finds something
 void CheckUrl(std::string_view source, const std::string& url);
 
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and

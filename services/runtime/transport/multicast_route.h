@@ -23,7 +23,7 @@ bool IsMulticast(const std::string& address);
 /// instead.
 std::string InPlaceOfUnicast(std::string_view url);
 
-/// The kernel's error for a route to an IPv4 address; "" if there is a route.
+/// The kernel's error if it has no route to an IPv4 address; "" if it has a route.
 std::string RouteError(const std::string& address);
 
 /// The interface of the route to an IPv4 address; "" if there is no such route or `address` is not

@@ -24,8 +24,8 @@ namespace {
 // A relay must answer within kAnswerLimit, and accept a byte within kStallLimit.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
-// The limit in place of kAnswerLimit for a try to connect to a relay again. A relay that was
-// started again answers immediately.
+// When the client tries to connect to a relay again, this limit replaces kAnswerLimit. A relay that
+// was started again answers immediately.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 // The client stores at most this many bytes from the relay while the relay accepts no data.
 constexpr std::size_t kMaxReceived = 64 << 20;
@@ -66,7 +66,7 @@ Client::Client(const std::string& url, const Limits& limits)
     }
     Greet();
     while (!Greeted(end - Clock::now())) {
-      if (Clock::now() < end) continue;  // a signal has ended the wait, or a part has come
+      if (Clock::now() < end) continue;  // a signal ended the wait, or a part of the greeting came
       throw std::runtime_error(
           fmt::format("{} takes connections but does not answer: is it a fogline-relay?",
                       endpoint_.ToString()));

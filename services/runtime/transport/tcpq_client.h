@@ -31,7 +31,7 @@ class ConnectionLost : public std::runtime_error {
 ///
 /// Readable() restores a lost connection as soon as the relay is back. One call never waits longer
 /// than its `timeout`. All messages are lost until the connection is restored. If the relay is not
-/// back after kTries tries, Readable() throws ConnectionLost a single time. After that, Readable()
+/// back after kTries tries, Readable() throws ConnectionLost, but only once. After that, Readable()
 /// only waits, so that the process can end a run properly.
 class Client {
  public:

@@ -45,8 +45,8 @@ std::string AddressOf(const std::string& host, std::string_view what) {
   return text.data();
 }
 
-/// errno of `call` for a new socket of this type and a place; 0 if the call succeeds, or if there
-/// is no socket.
+/// Calls `call`, such as bind(), with a new socket of this type and with the address of `place`.
+/// @return errno if the call fails; 0 if it succeeds, or if there is no socket
 template <class Call>
 int ErrorOf(int type, const Endpoint& place, const Call& call) {
   sockaddr_in address{};

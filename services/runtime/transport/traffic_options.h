@@ -34,7 +34,7 @@ std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& optio
                              std::optional<Role> role);
 
 /// Applies the options to a bus.
-/// @param role of this process; nullopt when the process has every role
+/// @param role the role of this process; nullopt when the process has every role
 /// @throws InputError when the options, or the key's file, are wrong
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus);
 

@@ -42,7 +42,7 @@ std::size_t Aligned(std::size_t size) {
   return (size + kNoteAlignment - 1) / kNoteAlignment * kNoteAlignment;
 }
 
-/// The build id among the notes of a segment.
+/// The build id among the notes of a segment; kUnknownBuild if no note contains it.
 BuildId BuildIdAmong(Bytes notes) {
   while (const auto note = At<ElfW(Nhdr)>(notes, 0)) {
     const std::size_t name_end = sizeof(*note) + Aligned(note->n_namesz);

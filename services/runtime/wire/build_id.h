@@ -18,7 +18,7 @@ using BuildId = std::int64_t;
 inline constexpr BuildId kUnknownBuild = 0;
 
 /// The build id in the first bytes of a program's file (ELF, of this machine's byte order). The
-/// bytes must include the notes of the file.
+/// bytes must include the notes of the file, because one of them contains the build id.
 BuildId BuildIdIn(Bytes file);
 /// The build id of a program's file.
 BuildId BuildIdOf(const std::filesystem::path& program);

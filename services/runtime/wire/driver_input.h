@@ -24,8 +24,9 @@ inline constexpr std::size_t kMostDeviceBytes = 64;
 /// The largest number of axes. No usual gamepad or wheel has more axes.
 inline constexpr std::int32_t kMostAxes = 16;
 
-/// Checks whether every number of the message is in its range.
-/// @return nullptr if every number is in its range; otherwise the counter for the refusal
+/// Checks whether every number of the message is in its range, and whether the name of the device
+/// has at most kMostDeviceBytes.
+/// @return nullptr if nothing is wrong; otherwise the counter for the refusal
 inline RefusalCounter WrongIn(const driver_input_t& input) {
   const auto in = [](double value, double least, double most) {
     return value >= least && value <= most;  // false for NaN

@@ -1,6 +1,6 @@
-// Signed traffic (a message signer): a trailer after the LCM payload proves that the sender has the
-// key. Generated decoders ignore the bytes after a payload, so lcm-spy, lcm-logger and
-// lcm-logplayer still work.
+// Signs messages, and verifies signed messages. A trailer after the LCM payload proves that the
+// sender has the key. LCM's generated decoders ignore the bytes after a payload, so lcm-spy,
+// lcm-logger and lcm-logplayer still work.
 //
 //   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
 //

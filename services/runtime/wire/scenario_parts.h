@@ -15,8 +15,9 @@ namespace fogline::runtime {
 /// fields of RUN.
 inline constexpr std::size_t kPartBytes = 1000;
 
-/// The range of a run's speed, in simulated seconds per second: a step of 0.1 s takes between 0.1
-/// ms and 100 s. The range keeps all times that are computed from the speed finite.
+/// The range of a run's speed, in simulated seconds per second. At these speeds, a step of 0.1 s
+/// takes between 0.1 ms and 100 s. The range keeps all times that are computed from the speed
+/// finite.
 inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
 inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }
@@ -78,7 +79,7 @@ class ScenarioParts {
   bool empty() const { return parts_.empty(); }
   bool Complete() const { return !parts_.empty() && missing_ == 0; }
 
-  /// Number of the first part that is missing; 0 if no part has come yet.
+  /// Number of the first part that is missing; 0 if no part has come yet, or if all have come.
   std::int64_t FirstMissing() const {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (parts_[i].empty()) return static_cast<std::int64_t>(i);

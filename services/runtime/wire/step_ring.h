@@ -35,12 +35,12 @@ inline constexpr std::size_t RingSlot(std::int64_t step) {
 /// is allocated.
 class StepRing {
  public:
-  /// What to do with a message that arrives.
+  /// How a message that arrives is judged.
   enum class Verdict {
-    kNew,        // Store() it
+    kNew,        // must be stored with Store()
     kDuplicate,  // known already, or so old that it is not needed
-    // Of a step that the ring has with other bytes. There are two producers, or a producer whose
-    // output is not a function of its inputs.
+    // The ring has other bytes for the step of this message. There are two producers, or a producer
+    // whose output is not a function of its inputs.
     kConflict,
     kOutOfWindow,  // of a step that cannot be under way yet
     kElsewhere,    // of no use to this role, but its step is known to be under way

@@ -10,8 +10,8 @@
 
 namespace fogline::runtime {
 
-/// Largest length in bytes of the title of an experiment, of the unit of an answer, and of the name
-/// of a condition, a questionnaire or an item of a questionnaire.
+/// The largest length in bytes of the title of an experiment, of the unit of an answer, and of the
+/// name of a condition, a questionnaire or an item of a questionnaire.
 inline constexpr std::size_t kMostTrialNameBytes = 100;
 /// Longest text of a marker or of an answer, in bytes. A TRIAL with such a text fits into one
 /// datagram.
@@ -35,7 +35,7 @@ inline RefusalCounter WrongIn(const trial_t& fact) {
   return sound ? nullptr : &status_t::out_of_range;
 }
 
-/// The beginning of the text that is short enough for a TRIAL. No character of UTF-8 is cut in two.
+/// The beginning of the text, as long as a TRIAL allows. A character of UTF-8 is not cut in two.
 inline std::string CutForTrial(std::string_view text) {
   if (text.size() <= kMostTrialTextBytes) return std::string(text);
   std::size_t end = kMostTrialTextBytes;

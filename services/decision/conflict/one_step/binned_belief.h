@@ -1,5 +1,5 @@
-// Sensor readings as bodies of evidence on bins of range, and measures of evidence theory for two
-// bodies.
+// Represents a sensor reading as a body of evidence of evidence theory (Dempster-Shafer): masses on
+// bins of range. Also computes measures of conflict between two bodies of evidence.
 #pragma once
 
 #include <array>
@@ -28,16 +28,17 @@ struct BinnedPair {
 /// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is put on an edge
 /// of the grid, so the pair depends only on the difference of the readings. The sign of the
 /// difference has no effect. A reading within a bin and a reading on an edge give different
-/// evidence, even with equal precision. So a measure is larger at the next multiple of the width.
-/// Between two multiples it may fall while the difference grows.
+/// evidence, even with equal precision. So a measure does not always grow with the difference. At
+/// each multiple of the bin width, it is larger than at the multiple before. But between two
+/// multiples it may fall while the difference grows.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
 /// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). k has
 /// a known defect: it is above 0 for equal evidence.
 double DempsterConflict(const BinnedPair& pair);
 
-/// Jousselme's distance d_J = sqrt((m1 - m2)' D (m1 - m2)/2), in [0, 1]. D(A, B) = |A and B|/|A or
-/// B| for the focal sets A and B (Jousselme, Grenier & Bosse 2001).
+/// Jousselme's distance d_J = sqrt((m1 - m2)' D (m1 - m2)/2), in [0, 1], with
+/// D(A, B) = |A and B|/|A or B| for the focal sets A and B (Jousselme, Grenier & Bosse 2001).
 double JousselmeDistance(const BinnedPair& pair);
 
 /// difBetP = max over all sets A of bins of |BetP1(A) - BetP2(A)|, in [0, 1] (Liu 2006). This

@@ -73,8 +73,8 @@ double MaxwellBelow(double y) {
 
 double ConsonantConflict(const Disagreement& disagreement) {
   // The integral is over the intervals of the narrower belief, because F of the wider belief varies
-  // slowly over these intervals. The integral ends at y = 9, because beyond it the integral of f is
-  // only 1e-16.
+  // slowly over these intervals. The integral ends at y = 9, because the integral of f beyond 9 is
+  // below 1e-16.
   constexpr double kReach = 9;
   constexpr int kNodes = 30;
   const double d = std::abs(disagreement.difference_m);

@@ -1,5 +1,6 @@
-// Represents a sensor reading as a belief of evidence theory (Dempster-Shafer): the least-committed
-// one with nested focal sets (consonant). Also computes measures of conflict between two beliefs.
+// Represents a sensor reading as a belief of evidence theory (Dempster-Shafer). The focal sets of
+// the belief are nested (consonant). Of all beliefs that fit the reading, it is the least-committed
+// one, which claims least. This file also computes measures of conflict between two beliefs.
 #pragma once
 
 #include <array>
@@ -25,8 +26,8 @@ class ConsonantBeliefs {
   /// @param levels in [1, kMostLevels]
   explicit ConsonantBeliefs(int levels);
 
-  /// c12 = sum over the focal sets A of reading 1 and B of reading 2 of m1(A) m2(B) D(A, B), in [0,
-  /// 1]. D(A, B) = |A and B|/|A or B| is the matrix of Jousselme's distance.
+  /// c12, in [0, 1]: the sum of m1(A) m2(B) D(A, B) over all focal sets A of reading 1 and B of
+  /// reading 2. D(A, B) = |A and B|/|A or B| is the matrix of Jousselme's distance.
   /// @param distance_m distance between the two readings, at least 0
   /// @param std1_m, std2_m above 0
   double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
@@ -60,7 +61,7 @@ double MaxwellBelow(double y);
 /// density f. It is the probability that an interval of reading 1 and an interval of reading 2 have
 /// no point in common,
 ///     k = integral over [0, |d|/s1] of f(y) F((|d| - s1 y)/s2) dy,
-/// in [0, 1], with k(0) = 0. The integral is computed by quadrature, to 1e-9.
+/// in [0, 1], with k(0) = 0. The integral is computed by quadrature, with an error of at most 1e-9.
 double ConsonantConflict(const Disagreement& disagreement);
 
 /// Pignistic distance difBetP, in [0, 1]: the largest difference, over all sets of ranges, between

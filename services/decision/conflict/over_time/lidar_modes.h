@@ -1,5 +1,5 @@
-// Modes of the LiDAR: it measures the range of the car, it measures the range of the fog, or it has
-// no echo.
+// Estimates the mode of the LiDAR: it measures the range of the car, it measures the range of the
+// fog, or it has no echo.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace fogline::conflict {
 /// not of motion. p_ij is the probability of mode j after mode i, and Lambda_j the likelihood of
 /// the step's LiDAR value in mode j:
 ///
-///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / sum
+///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / (sum_k c_k Lambda_k)
 ///
 /// The reference range r is the radar's range, or the predicted range if the radar has no value.
 /// The likelihood of an echo at z is Lambda_j = P_echo,j times
@@ -56,8 +56,8 @@ class LidarModeConflict final : public ConflictMeasure {
   LidarModes modes_;
 };
 
-/// Blames the LiDAR with the probability of LidarModeConflict. The radar has no modes here and is
-/// never blamed.
+/// The LiDAR's blame is the score of LidarModeConflict. The radar has no modes here and is never
+/// blamed.
 class LidarModeBlame final : public BlameMeasure {
  public:
   explicit LidarModeBlame(const ConflictParameters& parameters) : conflict_(parameters) {}

@@ -1,5 +1,5 @@
-// Normalised squares and means of the difference over a window, for chi-square and Gauss tests
-// (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
+// Normalised squares and means of the difference over a window, for tests with the chi-square and
+// the normal distribution (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
 #pragma once
 
 #include "services/decision/conflict/one_step/divergence.h"

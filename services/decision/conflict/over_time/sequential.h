@@ -11,10 +11,10 @@ namespace fogline::conflict {
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
-/// in standard deviations. Two such tests of opposite sign with kappa = 0.5 and a threshold of 4
-/// have a mean run length of 168 steps to a false alarm. After a shift by one standard deviation,
-/// the mean run length to the alarm is 8.4 steps. With a threshold of 5 these run lengths are 465
-/// and 10.4 steps. A skipped step does not change g.
+/// in standard deviations. Take two such tests of opposite sign with kappa = 0.5 and a threshold of
+/// 4. Without a fault, they give a false alarm after 168 steps on average. After a shift by one
+/// standard deviation, they give the alarm after 8.4 steps on average. With a threshold of 5 these
+/// averages are 465 and 10.4 steps. A skipped step does not change g.
 class Cusum final : public ConflictMeasure {
  public:
   explicit Cusum(const ConflictParameters& parameters);
@@ -47,7 +47,8 @@ struct SprtBounds {
 };
 SprtBounds WaldBounds(double alpha, double beta);
 
-/// SPRT of the hypothesis "the LiDAR's range is too short by delta" against "the range is correct":
+/// Sequential probability ratio test (SPRT) of the hypothesis "the LiDAR's range is too short by
+/// delta" against "the range is correct":
 ///
 ///     L+ = L + (delta/S)(d - delta/2), clamped to [accept_agreement, ceiling accept_conflict]
 ///

@@ -67,7 +67,7 @@ void SensorResidual::Reset() {
 NisBlame::NisBlame(const ConflictParameters& parameters)
     : offset_m_(parameters.offset_m),
       // A difference radar - LiDAR of missing_conflict_m means that the radar's range is too long,
-      // or that the LiDAR's range is too short.
+      // or that the LiDAR's range is too short. So the LiDAR's error is negative.
       radar_(parameters, parameters.nominal_radar_std_m, parameters.missing_conflict_m),
       lidar_(parameters, parameters.nominal_lidar_std_m, -parameters.missing_conflict_m) {}
 
@@ -99,8 +99,8 @@ Support DengSupport(const BeliefProducts& products) {
 }
 
 Support MurphySupport(const BeliefProducts& products) {
-  // d_J^2 between belief i and the average of j and k is half of |m_i - (m_j + m_k)/2|^2 = 3/2 c11
-  // - c_ij - c_ik + c_jk/2.
+  // d_J^2 between belief i and the average of j and k is half of
+  //     |m_i - (m_j + m_k)/2|^2 = 3/2 c11 - c_ij - c_ik + c_jk/2.
   const auto support = [square = products.square](double to_one, double to_other, double between) {
     const double distance = (1.5 * square - to_one - to_other + between / 2) / 2;
     return 1 - std::sqrt(std::clamp(distance / square, 0.0, 1.0));
@@ -110,8 +110,8 @@ Support MurphySupport(const BeliefProducts& products) {
 }
 
 Support MutualSupport(const BeliefProducts& products) {
-  // Law of cosines: |a - b|^2 = |a|^2 + |b|^2 - 2 |a| |b| cos. All lengths are sqrt(c11), so cos =
-  // c_ab/c11.
+  // Law of cosines: |a - b|^2 = |a|^2 + |b|^2 - 2 |a| |b| cos. All lengths are sqrt(c11), so
+  // cos = c_ab/c11.
   const double square = products.square;
   return Credibility(products.radar_lidar / square, products.radar_prediction / square,
                      products.lidar_prediction / square);

@@ -19,12 +19,14 @@
 
 namespace fogline::conflict {
 
-/// The statistic T that compares one sensor with the prediction: T = (sum of u_i)/sqrt(n) over the
-/// last n residuals, with n at most blame_window_steps. The residual is u = (z -
-/// prediction)/sqrt(s^2 + s_p^2), with the sensor's range z and the standard deviations s of the
-/// sensor and s_p of the prediction. If n is 1, T^2 is the NIS. The prediction's error correlates
-/// the residuals of several steps, so T of a long window scatters more than a standard normal
-/// number.
+/// The statistic T that compares one sensor with the prediction:
+///
+///     T = (sum of u_i)/sqrt(n)        u = (z - prediction)/sqrt(s^2 + s_p^2)
+///
+/// The sum is over the last n residuals u, with n at most blame_window_steps. z is the sensor's
+/// range, s its standard deviation, and s_p the standard deviation of the prediction. If n is 1,
+/// T^2 is the NIS. An error of the prediction lasts for several steps, so the residuals of these
+/// steps are correlated. So T of a long window scatters more than a standard normal number.
 class SensorResidual {
  public:
   /// @param nominal_std_m standard deviation to use before the sensor has stated one
@@ -91,7 +93,8 @@ struct BeliefProducts {
   double lidar_prediction;
 };
 
-/// Support of each body of evidence by the other bodies, at least 0, in any unit.
+/// Support of the radar and of the LiDAR, each by the two other bodies of evidence (the other
+/// sensor and the prediction). At least 0, in any unit.
 struct Support {
   double radar;
   double lidar;

@@ -17,7 +17,8 @@ namespace {
 
 /// The ports of the last calls of FreshMulticastUrl(). The kernel delivers a multicast message to
 /// every socket on the message's port, even if the socket has joined another group. So a run needs
-/// a port that no other socket uses. Its sockets are often made later and in other processes.
+/// a port that no other socket uses. The run's own sockets are often made later and in other
+/// processes. So this process keeps the port for them.
 class ReservedPorts {
  public:
   /// Reserves a UDP port of this machine. @return false if another socket has the port

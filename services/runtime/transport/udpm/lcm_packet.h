@@ -1,5 +1,5 @@
-// The head of a UDP packet of LCM (LCM, udpm_util.h). A short message is one packet: the word
-// "LC02", the number of the message, the channel's name with a final 0, and the data. A long
+// The head of a UDP packet of LCM (source: LCM's udpm_util.h). A short message is one packet: the
+// word "LC02", the number of the message, the channel's name with a final 0, and the data. A long
 // message consists of several fragments. A fragment has the word "LC03", the number of the message,
 // the size of the message's data, the offset of this part, the number of this fragment and the
 // count of fragments. In the first fragment, the channel's name with a final 0 follows. All numbers
@@ -22,8 +22,8 @@ struct LcmPacket {
   std::uint16_t fragments = 1;
   std::string_view channel;  // in the first packet of a message, otherwise ""
   std::size_t data_at = 0;   // where the packet's data begins
-  std::uint32_t size = 0;    // of the message's data; 0 if the packet is not a fragment
-  std::uint32_t offset = 0;  // of this part of the data; 0 if the packet is not a fragment
+  std::uint32_t size = 0;    // size of the message's data; 0 if the packet is not a fragment
+  std::uint32_t offset = 0;  // place of this part in the data; 0 if the packet is not a fragment
 
   bool First() const { return fragment == 0; }
   /// Whether this packet has a whole message, perhaps as its only fragment.

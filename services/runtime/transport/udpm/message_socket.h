@@ -42,8 +42,9 @@ class MessageSocket {
   void KeepBacklog();
   bool keeps_backlog() const { return backlog_.has_value(); }
 
-  /// Waits up to `timeout` for a message. Ignores fragments, and messages with more data than
-  /// kMaxMessageBytes and a signature, like ChannelFilter(). A signal ends the wait.
+  /// Waits up to `timeout` for a message. Ignores fragments, and messages whose data is longer than
+  /// kMaxMessageBytes and a signature together (ChannelFilter() already drops most of these
+  /// packets). A signal ends the wait.
   /// @return whether there is a message
   bool Wait(Duration timeout);
   /// The message for which Wait() has returned true. It is valid until the next call of Wait().
