@@ -29,7 +29,7 @@ double SweepRowsPerSecond(int rows, int jobs) {
   return rows / nlohmann::json::parse(Sweep(rows, jobs).out)["wall_s"].get<double>();
 }
 
-/// Rows per second, on one core, of a sweep with so many thresholds of the arbitrator.
+/// Rows per second, on one core, of a sweep with this number of thresholds of the arbitrator.
 double ThresholdRowsPerSecond(int thresholds, int seeds) {
   const std::string grid = thresholds == 1 ? "0.5" : "0.1:0.9:" + std::to_string(thresholds);
   const ProgramResult result =
@@ -40,7 +40,7 @@ double ThresholdRowsPerSecond(int thresholds, int seeds) {
 }
 
 double SweepPeakMemory_mb(int rows) {
-  SweepRowsPerSecond(1, 1);  // removes the old files
+  SweepRowsPerSecond(1, 1);  // removes the files of earlier sweeps
   return Sweep(rows, 2).peak_memory_mb;
 }
 

@@ -23,7 +23,8 @@ struct Cost {
   double memory_mb;
 };
 
-/// One quantity that grows: its sizes, the work of a size, and the number of pieces of this work.
+/// The measurement of one quantity that grows. It has the sizes, a function that does the work of a
+/// size, and a function that returns the number of pieces of this work.
 struct Trial {
   Growth growth;
   std::vector<std::int64_t> sizes;
@@ -54,7 +55,7 @@ Cost Sweep(std::int64_t runs) {
 
 std::vector<Trial> Trials(Effort effort) {
   const bool full = effort == Effort::kFull;
-  const std::int64_t steps = full ? 100'000 : 10'000;  // of a run with several followers
+  const std::int64_t steps = full ? 100'000 : 10'000;  // of each run in the trial `followers`
   std::vector<Trial> trials;
   trials.push_back(
       {.growth = {.name = "followers", .what = "following cars", .piece = "step", .points = {}},

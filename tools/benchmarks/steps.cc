@@ -38,7 +38,7 @@ const Scenario& Paper() {
   return scenario;
 }
 
-/// A scenario with the beam fog, a physical fog model in which the LiDAR has several beams.
+/// A scenario with the fog model `beam`, a physical model in which the LiDAR has several beams.
 const Scenario& DenseFog() {
   static const Scenario scenario = LoadScenario("scenario/dense_fog.json");
   return scenario;

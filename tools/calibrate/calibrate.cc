@@ -12,7 +12,7 @@ namespace fogline::calibrate {
 namespace {
 
 // Share of the evaluations that the search in the whole range gets. The search around the best
-// point gets the others.
+// point gets the rest.
 constexpr double kGlobalPart = 0.6;
 // A table with at most this objective meets the target: with weights of 1, each number differs by
 // at most 0.001 points from the target.

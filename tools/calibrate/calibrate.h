@@ -17,7 +17,7 @@ using SearchProgress = std::function<void(int evaluations, double best)>;
 struct Calibration {
   std::vector<double> values;  // best values of the free fields so far
   Evaluation best;
-  std::optional<double> objective_at_start;  // at the first point; empty if it permits no run
+  std::optional<double> objective_at_start;  // empty if the first point permits no run
   int evaluations = 0;
   bool interrupted = false;
 };

@@ -1,4 +1,4 @@
-// Searches for a minimum of a function of the fields' shares, by algorithms of NLopt.
+// Searches for a minimum of a function (FunctionOfShares) by algorithms of NLopt.
 #pragma once
 
 #include <functional>

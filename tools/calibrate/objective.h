@@ -73,7 +73,7 @@ class Objective {
   /// its bounds. The result is empty if `go_on` returned false.
   std::optional<Evaluation> Evaluate(std::span<const double> values, const GoOn& go_on) const;
 
-  /// The values of the free fields at a point that gives them as shares of their ranges.
+  /// The values of the free fields at a point. The point gives each field as a share of its range.
   std::vector<double> ValuesAt(std::span<const double> shares) const;
   /// The problem's scenario with these values. @throws InputError as StartSteadily()
   Scenario With(std::span<const double> values) const;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
 
-/// The first byte after the value that begins at `begin`.
+/// Position of the first byte after the value that begins at `begin`.
 std::size_t EndOfValue(std::string_view text, std::size_t begin) {
   int depth = 0;
   bool quoted = false;
@@ -39,7 +39,7 @@ std::size_t EndOfValue(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The blanks between the byte before a key (a brace or comma) and the key.
+/// The blanks directly before a key. A brace or a comma is before these blanks.
 std::string_view BlanksBefore(std::string_view text, std::size_t key) {
   const std::size_t last = text.find_last_not_of(kBlank, key - 1);
   return text.substr(last + 1, key - last - 1);

@@ -24,7 +24,7 @@ inline constexpr std::array<std::string_view, 3> kSteadyFields{
     "/world/host_gap_m", "/acc/standstill_m", "/world/follower_gap_m"};
 
 /// Sets the gaps so that automation, human and follower do not accelerate at step 0 in clear air.
-/// All cars have the host's speed v.
+/// All cars must have the host's speed v.
 ///
 /// - The host's gap is the equilibrium gap of the driver's IDM (services/models/driver/idm.h),
 ///   (s_0 + v T) / sqrt(1 - (v/v_0)^delta), with the standstill gap s_0, the time gap T, the

@@ -41,7 +41,7 @@ class ScenarioArguments {
     if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
   }
 
-  /// @param more overrides of the verb, which prevail over those of the user
+  /// @param more overrides of the verb itself. They have precedence over the overrides of the user
   /// @throws InputError
   Scenario Load(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> overrides = overrides_;
@@ -58,7 +58,7 @@ class ScenarioArguments {
     return std::ranges::find(overrides_, text) != overrides_.end();
   }
 
-  /// See RefuseOverride().
+  /// Refuses a --set of this field, as RefuseOverride() does.
   void RefuseOverrideOf(std::string_view pointer, std::string_view why) const {
     RefuseOverride(overrides_, pointer, why);
   }
@@ -121,7 +121,7 @@ std::string CheckedNetworkUrl(const std::string& given);
 /// The option --lcm-url of a verb that observes a network from outside.
 class NetworkArguments {
  public:
-  /// @param what the end of the help text "LCM network ..."
+  /// @param what the words that follow "LCM network" in the help text, such as "to examine"
   NetworkArguments(CLI::App& verb, std::string_view what);
 
   /// The network to observe. @throws InputError as CheckedNetworkUrl()

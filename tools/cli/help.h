@@ -30,7 +30,7 @@ struct ExitMeanings {
   bool interruptible = false;
 };
 
-/// Puts the exit codes before the text that is set by footer().
+/// Adds the exit codes to the help of `command`, before the text that is set by footer().
 void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
 
 /// The help of `app`, or of one of its verbs.

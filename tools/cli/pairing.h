@@ -15,7 +15,7 @@ namespace fogline::cli {
 /// Everything else is the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
-/// The results that need the paired run. All of them are empty if there is no paired run.
+/// The results that need the paired run. Without a paired run, `measures` and `without` are empty.
 struct Pairing {
   metrics::PairedMetrics measures;
   metrics::FogEffect without;  // effect of the fog in the paired run without traded control

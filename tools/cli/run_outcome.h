@@ -26,7 +26,7 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome);
 std::string ToText(const RunOutcome& outcome);
 
 /// Prints the outcome of a run on stdout, and the reason of a failure on stderr.
-/// @param verb for the text of an error
+/// @param verb name of the verb, for the text of an error
 /// @return the exit code
 /// @throws std::runtime_error if the log of a run in real time lacks published messages
 int PrintOutcome(const RunOutcome& outcome, bool json, std::string_view verb);

@@ -70,7 +70,7 @@ std::filesystem::path LogOf(const TableRuns& runs, std::int64_t seed, std::strin
   return runs.logs / fmt::format("{}-seed{}-threshold-{}.lcm", runs.name, seed, name);
 }
 
-/// Two different thresholds have different names.
+/// The name of a threshold in the names of logs. Two different thresholds have different names.
 std::string NameOf(double threshold) { return fmt::format("{}", threshold); }
 
 /// @throws InputError if a log would replace a file that is no event log
@@ -125,7 +125,7 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenari
   const auto of_a_seed = static_cast<std::int64_t>(thresholds.size()) + 1;
   Progress progress("run", seeds.count() * of_a_seed);
   std::int64_t done = 0;
-  std::mutex mutex;  // of rows, progress and done
+  std::mutex mutex;  // protects rows, progress and done
   runner::SideBySide(seeds.count() * of_a_seed, runs.jobs, [&](std::int64_t i) {
     const std::int64_t seed = i / of_a_seed;
     const auto row = static_cast<std::size_t>(i % of_a_seed);

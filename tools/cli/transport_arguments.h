@@ -1,4 +1,4 @@
-// Network and roles of a run: arguments of the verbs that make runs.
+// Arguments that name the network and the roles of a run, for the verbs that make runs.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ namespace fogline::cli {
 /// and the options that start roles on other machines.
 class TransportArguments {
  public:
-  /// @param transport default transport. If it is direct, but roles are on other machines, the
+  /// @param transport the default transport. If it is direct, but roles are on other machines, the
   /// default is udpm. If $LCM_DEFAULT_URL is set, this URL is the default instead. But if the
   /// default is direct, and no role is external, $LCM_DEFAULT_URL is ignored.
   TransportArguments(CLI::App& verb, std::string transport);

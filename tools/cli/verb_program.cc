@@ -60,8 +60,9 @@ int Run(const CLI::App& app, const Action& action) {
   }
 }
 
-/// @param arguments without the program's name, in reverse order
-/// @param asks_for_completion whether to print what may stand in place of the last argument
+/// @param arguments the command line without the program's name, in reverse order, as CLI11 needs
+///     it
+/// @param asks_for_completion whether to print the words that may replace the last argument
 int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs,
          bool asks_for_completion) {
   FailWritesBeyondTheSizeLimit();

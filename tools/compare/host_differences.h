@@ -54,6 +54,7 @@ struct ComparedStep {
   double recorded_gap_m;
 };
 
+/// Host and recorded car in each step of the run.
 /// @param start_s time of the recording that belongs to step 0
 /// @pre the times of the recording ascend and cover the times of the run (CheckTimes())
 std::vector<ComparedStep> CompareSteps(std::span<const metrics::Sample> run, double start_s,

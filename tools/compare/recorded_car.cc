@@ -48,7 +48,7 @@ std::size_t FindColumn(const std::vector<std::string_view>& header, const std::s
 }
 
 /// Checks that all values of a column are in [least, most].
-/// @throws InputError that names the first other value
+/// @throws InputError that names the first value outside of this range
 void RequireBetween(double least, double most, const std::string& column,
                     const std::vector<CsvNumber>& numbers, const std::filesystem::path& file,
                     const std::string& text) {

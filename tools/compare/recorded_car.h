@@ -31,7 +31,7 @@ struct RecordedColumns {
 RecordedCar ReadRecordedCar(const std::filesystem::path& file, const RecordedColumns& car,
                             const RecordedSection& leader);
 
-/// @param file for the message
+/// @param file the file that the error message names
 /// @throws InputError if the times do not ascend, or do not cover the times of the run
 void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double end_s,
                 const std::filesystem::path& file);

@@ -33,8 +33,8 @@ std::string_view NameOf(Finding::Level level);
 /// Examines route, multicast, socket filter and receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// Finds the runs on the network, the runs that are announced on the network, and the roles that
-/// wait for a run, within a second.
+/// Listens to the network for a second. Finds the runs on the network, the runs that are announced
+/// there, and the roles that wait for a run.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
 /// Examines whether this machine and another machine hear each other on the network. `fogline

@@ -103,7 +103,7 @@ void ExaminePriority(const std::filesystem::path& programs, Findings& findings) 
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
-  constexpr double kTooLateMs = 5;  // in real time a step counts as late if it begins so late
+  constexpr double kTooLateMs = 5;  // in real time, a step that begins this late counts as late
   const Priority priority;
   std::vector<double> late_ms;
   TimePoint due = Clock::now();

@@ -95,7 +95,7 @@ Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   const TimePoint began = Clock::now();
   back = false;
   here.Publish("FOGLINE_PING", message);
-  do {  // also once after a pause of this process that is longer than the limit
+  do {  // looks at least once, even if this process has paused for longer than the limit
     there.Wait(milliseconds(1));
     here.Wait(milliseconds(1));
   } while (!back && Clock::now() - began < kLimit);
@@ -135,7 +135,7 @@ void ExamineLoopback(const runtime::MulticastAddress& address, Findings& finding
   std::vector<double> times_us;
   try {
     times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
-  } catch (const runtime::NetworkClosed&) {  // the finding is below
+  } catch (const runtime::NetworkClosed&) {  // times_us is empty, so the finding follows
   } catch (const InputError& error) {
     std::string_view why = error.what();
     constexpr std::string_view kPrefix = "error: ";

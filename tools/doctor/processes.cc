@@ -1,5 +1,5 @@
 // Examines the processes of Fogline on this machine, from /proc (proc(5)): runs, and roles that
-// were started by themselves.
+// were started without a runner.
 #include <unistd.h>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ Finding AssessRole(const Process& role, bool has_runner) {
 
 void ExamineProcesses(Findings& findings) {
   const std::map<pid_t, Process> processes = ReadProcesses();
-  std::map<pid_t, std::vector<const Process*>> runs;  // roles by runner
+  std::map<pid_t, std::vector<const Process*>> runs;  // the roles of each runner
   bool any = false;
   for (const auto& [pid, process] : processes) {
     if (IsRunner(process.program)) continue;

@@ -12,8 +12,9 @@
 namespace fogline::doctor {
 namespace {
 
-/// Shell lines that add the route with systemd-networkd, which reads one file for each interface. A
-/// file in the folder "FILE.d" beside this file adds the route.
+/// Shell lines that add the route with systemd-networkd, which reads one file for each interface.
+/// For lo, the lines write this file. For any other interface, whose file has the name FILE, the
+/// lines add the route in a further file, in the folder /etc/systemd/network/FILE.d.
 std::string NetworkdScript(const std::string& interface) {
   const std::string route =
       "[Route]\n"
@@ -38,8 +39,8 @@ std::string NetworkdScript(const std::string& interface) {
       interface, route);
 }
 
-/// Shell lines that add the route with ifupdown, which calls the scripts of this folder for each
-/// interface that comes up.
+/// Shell lines that add the route with ifupdown. For each interface that comes up, ifupdown calls
+/// the scripts of the folder /etc/network/if-up.d.
 std::string IfupdownScript(const std::string& interface) {
   return fmt::format(
       "cat >/etc/network/if-up.d/fogline <<'END'\n"

@@ -149,7 +149,7 @@ class Conversation {
   std::optional<status_t> other_;
   std::optional<TimePoint> heard_;  // when the other doctor was first heard
   bool hears_us_ = false;
-  std::map<std::string, bool> is_us_;  // by resolved name
+  std::map<std::string, bool> is_us_;  // for each resolved name, whether it means this machine
   TimePoint say_at_{};
   std::vector<std::uint8_t> buffer_;
 };

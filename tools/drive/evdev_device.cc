@@ -134,7 +134,7 @@ void EvdevDevice::Take(const input_event& event, TimePoint now) {
     throttle_moved_ = throttle_moved_ || (map_.throttle && event.code == map_.throttle->code);
     brake_moved_ = brake_moved_ || (map_.brake && event.code == map_.brake->code);
   }
-  if (event.type != EV_KEY || map_.throttle || event.value == 2) return;  // 2: repeated
+  if (event.type != EV_KEY || map_.throttle || event.value == 2) return;  // 2: key repeat
   if (event.code == KEY_UP) keys_.Hold(PedalKey::kThrottle, event.value != 0, now);
   if (event.code == KEY_DOWN) keys_.Hold(PedalKey::kBrake, event.value != 0, now);
 }

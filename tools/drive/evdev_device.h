@@ -16,7 +16,8 @@ struct input_event;
 
 namespace fogline::drive {
 
-/// Axes and buttons that the user names; "": the usual axis or button (UsualMap()).
+/// The axes and buttons that the user has named. "" stands for the usual axis or button
+/// (UsualMap()).
 struct DeviceNames {
   std::string throttle;
   std::string brake;
@@ -24,9 +25,9 @@ struct DeviceNames {
   std::string give_back;
 };
 
-/// An input device as pedals and buttons. A pedal counts as released until its axis has moved,
-/// because wheels report wrong values before the first movement. While the device is unplugged, no
-/// person is present. When the device is plugged in again, this class opens it again.
+/// Reads the pedals and buttons of an input device. A pedal counts as released until its axis has
+/// moved, because wheels report wrong values before the first movement. While the device is
+/// unplugged, no person is present. When the device is plugged in again, this class opens it again.
 class EvdevDevice final : public PedalSource {
  public:
   /// @throws InputError if the device cannot be read, or has no pedals
@@ -51,7 +52,7 @@ class EvdevDevice final : public PedalSource {
 
   std::filesystem::path path_;
   DeviceNames names_;
-  libevdev* device_ = nullptr;  // nullptr while it is unplugged
+  libevdev* device_ = nullptr;  // nullptr while the device is unplugged
   int fd_ = -1;
   std::string name_;
   DeviceMap map_;

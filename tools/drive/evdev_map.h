@@ -15,17 +15,17 @@ struct AxisRange {
   int most = 0;
 };
 
-/// At each end, this share of an axis counts as released or as full. The value is our choice:
-/// potentiometers of pedals rest within about 1 % of their ends, and a person does not feel 3 % of
-/// a pedal's travel.
+/// The size of the dead zone at each end of an axis, as a share of the axis. In a dead zone the
+/// pedal counts as fully released or as fully pressed. The value is our choice: potentiometers of
+/// pedals rest within about 1 % of their ends, and a person does not feel 3 % of a pedal's travel.
 inline constexpr double kDeadZone = 0.03;
 
 /// A pedal: an axis, and its direction.
 struct PedalAxis {
   int code = -1;          // ABS_...
-  bool inverted = false;  // largest value when the pedal is released
+  bool inverted = false;  // whether the value is largest when the pedal is released
 
-  /// Travel in [0, 1] at this value.
+  /// The travel of the pedal at this value of the axis: from 0 (released) to 1 (fully pressed).
   double Travel(int value, const AxisRange& range) const {
     if (range.most <= range.least) return 0;
     const double span = static_cast<double>(range.most) - range.least;
@@ -59,16 +59,19 @@ struct DeviceMap {
   int give_back = -1;
 };
 
-/// The usual map of a device:
+/// The usual map of a device. The first row that applies to the device gives its pedals:
 ///
-///     has ABS_GAS and ABS_BRAKE  these are the pedals
-///     gamepad                    right trigger (ABS_RZ) throttle, left trigger (ABS_Z) brake
-///     other with ABS_Z and RZ    wheel: ABS_Z throttle, ABS_RZ brake, both released at their
-///                                greatest value, as Logitech's wheels have it
-///     keyboard                   arrow up throttle, arrow down brake
+///     Device                     Throttle                  Brake
+///     has ABS_GAS and ABS_BRAKE  ABS_GAS                   ABS_BRAKE
+///     gamepad with triggers      right trigger (ABS_RZ)    left trigger (ABS_Z)
+///     has ABS_Z and ABS_RZ       ABS_Z                     ABS_RZ
+///     keyboard                   arrow up                  arrow down
 ///
-/// Buttons to take over and to give back: the south (A) and the east (B) button of a gamepad, the
-/// first two buttons of a wheel, space and g of a keyboard.
+/// The third row is for wheels. Their axes have the greatest value when the pedal is released, as
+/// on Logitech's wheels.
+///
+/// The buttons to take over and to give back are the south (A) and the east (B) button of a
+/// gamepad, the first two buttons of a wheel, and space and g of a keyboard.
 /// @return nullopt if the device has neither pedals nor keys
 std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
 
@@ -76,7 +79,8 @@ std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
 /// pedal is released.
 /// @throws InputError that names `option` if the kernel has no such axis
 PedalAxis ParsePedal(std::string_view text, std::string_view option);
-/// A button as the user names it: "BTN_SOUTH" or "KEY_SPACE". @throws InputError as ParsePedal()
+/// A button as the user names it: "BTN_SOUTH" or "KEY_SPACE".
+/// @throws InputError that names `option` if the kernel has no such button
 int ParseButton(std::string_view text, std::string_view option);
 
 }  // namespace fogline::drive

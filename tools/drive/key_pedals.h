@@ -21,14 +21,15 @@ enum class PedalKey : std::uint8_t { kThrottle, kBrake };
 /// comes after a longer delay. So each character counts as a key that is down for kPress. The pedal
 /// moves back only when no further character can be expected: kFirstDelay after a first character,
 /// and kPress after a later one. So a tap moves a pedal a little, and the pedal rests there for a
-/// moment. After the person has released the key, the pedal begins to move back a little later.
+/// moment. When the person releases the key, the pedal does not move back at once, but a little
+/// later.
 class KeyPedals {
  public:
-  /// After a character, its key counts as down for this time. Characters of a key that is down come
-  /// every 33 to 40 ms (Linux console, X11: 25 to 30 in a second). The value is three times as
-  /// long, so that delays of a terminal over a network do not interrupt a pedal.
+  /// After a character has come, its key counts as down for this time. Characters of a key that is
+  /// down come every 33 to 40 ms (Linux console, X11: 25 to 30 in a second). The value is three
+  /// times as long, so that delays of a terminal over a network do not interrupt a pedal.
   static constexpr Duration kPress = milliseconds(120);
-  /// For this time the pedal waits for the second character. The value is a little longer than the
+  /// The pedal waits this long for the second character. The value is a little longer than the
   /// longest usual delay of the second character: X11's 660 ms (Linux console: 250 ms).
   static constexpr Duration kFirstDelay = milliseconds(700);
 
@@ -82,7 +83,7 @@ class KeyPedals {
   struct Key {
     TimePoint pressed_until{};
     TimePoint rests_until{};
-    bool seen = false;  // a character has come since the pedal last went back
+    bool seen = false;  // whether a character has come since the pedal last moved back
     double travel = 0;
   };
 

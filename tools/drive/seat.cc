@@ -18,14 +18,16 @@
 namespace fogline::drive {
 namespace {
 
-// Longest wait of the thread for its device or a message. In this time the pedals of keys move by
-// at most a fifth of their travel, because key_press_ps is at most 20 per second.
+// The longest time that the thread waits for its device or for a message. In this time, a pedal
+// that is controlled by a key moves by at most a fifth of its travel, because key_press_ps is at
+// most 20 per second.
 constexpr Duration kTick = milliseconds(10);
-// Priority of the thread, as that of the roles in real time. On a busy machine an ordinary thread
-// may be silent for so long that the person counts as absent. The thread needs little time.
+// The real-time priority of the thread. The roles other than the world have the same priority. On a
+// busy machine a thread without this priority may be silent for so long that the person counts as
+// absent. The thread needs little processor time.
 constexpr int kPriority = 1;
 
-/// The text that the person sees for a mode of HOST_COMMAND. A mode without a text has "".
+/// The text that the person sees for a mode of HOST_COMMAND; "" if the mode has no text.
 std::string_view TextOf(std::int8_t mode) {
   switch (mode) {
     case arbitration_t::REQUEST:
@@ -104,9 +106,10 @@ Seat::~Seat() {
 
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
-  RunThreadBeforeOthers(kPriority);  // the runner reports a refusal of the kernel for the roles
-  // The messages of a seat have no --faults, because a seat is not a part of the run. It signs as
-  // the runner (DRIVER_INPUT in services/graph.h).
+  RunThreadBeforeOthers(kPriority);  // if the kernel refuses, the runner reports this for its roles
+  // --faults does not apply to the messages of a seat, because a seat is not a part of the run. The
+  // seat signs its messages as the runner, because the runner is the sender of DRIVER_INPUT in
+  // services/graph.h.
   const auto opened =
       runtime::OpenBus(url, {.key_file = traffic.key_file, .faults = ""}, Role::kRunner);
   runtime::Bus& bus = *opened;

@@ -13,9 +13,9 @@
 
 namespace fogline::drive {
 
-/// Makes the messages of a seat. A message is due at each change, and at least every 40 ms, but at
-/// most 200 messages in a second. Both values keep a margin of a fifth from the limits of
-/// services/runtime/wire/driver_input.h.
+/// Makes the messages of a seat. A message is due at each change of the state, and at least every
+/// 40 ms. At most 200 messages a second are due. Both values keep a margin of a fifth from the
+/// limits of services/runtime/wire/driver_input.h.
 class InputMaker {
  public:
   static constexpr Duration kEvery = milliseconds(40);
@@ -27,8 +27,8 @@ class InputMaker {
   void SawTruth(const header_t& header);
   /// Whether this state must be sent now.
   bool Due(const PedalState& state, TimePoint now) const;
-  /// The message of this state, which then counts as sent. The message is valid until the next
-  /// call.
+  /// Makes the message of this state. The state then counts as sent. The message is valid until the
+  /// next call.
   const driver_input_t& Make(const PedalState& state, TimePoint now);
 
  private:

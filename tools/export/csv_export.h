@@ -18,12 +18,13 @@ std::vector<std::filesystem::path> CsvFilesOfSomeLogs(const std::filesystem::pat
 /// Whether WriteCsv() could have written the file, judged by its beginning.
 bool IsCsvExport(const std::filesystem::path& file);
 
-/// Writes the files of CsvFiles() as AtomicFiles, scenario.json last. So a folder never has files
-/// of two logs, even if the process is killed. A folder with scenario.json has all files of one
-/// log. If the disk is full, the old files do not change. Columns have the names of fields. The
-/// columns of a list are "state.0", "state.1" and so on. Numbers have enough digits to restore
-/// every bit. A row of a message that the log lacks has only the cells of the header. Without a
-/// scenario there is no scenario.json.
+/// Writes CHANNEL.csv for each table, and then scenario.json, as AtomicFiles. So the folder never
+/// has old and new versions of these files together, even if the process is killed. A folder with
+/// the new scenario.json has all files of the log. If the log has no wall clock, or no scenario,
+/// WriteCsv() at the end removes the file that an earlier export has left. If the disk is full, the
+/// old files do not change. Columns have the names of fields. The columns of a list are "state.0",
+/// "state.1" and so on. Numbers have enough digits to restore every bit. A row of a message that
+/// the log lacks has only the cells of the header. Without a scenario there is no scenario.json.
 /// @return the files
 /// @throws InputError if a file cannot be created in the folder; std::runtime_error when the disk
 /// is full; Interrupted

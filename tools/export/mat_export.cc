@@ -24,8 +24,8 @@
 namespace fogline::exports {
 namespace {
 
-// Beginning of a MAT-file of level 5. Readers evaluate only the first word. This beginning has no
-// time of day, unlike matio's default.
+// Beginning of a MAT-file of level 5. Readers evaluate only the first word. Unlike matio's default,
+// this beginning has no time of day, so that equal logs give equal files.
 constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
 // MAT-files have sizes of 32 bits, and readers interpret these sizes as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
@@ -116,7 +116,8 @@ std::size_t BytesOf(const ChannelTable& table) {
 }
 
 /// Throws the reason why matio could not write the tables. matio does not report the reason. So
-/// this function writes as many bytes to the same file, and fails for the same reason.
+/// this function writes as many bytes to the same file. This write fails for the same reason, and
+/// its exception has the reason. If it does not fail, the exception has no reason.
 /// @throws std::runtime_error
 [[noreturn]] void Fail(const RunTables& tables, const std::filesystem::path& path,
                        AtomicFile& file) {

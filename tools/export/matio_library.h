@@ -1,5 +1,6 @@
-// The functions of matio. The first use loads matio, because matio needs 30 other libraries (HDF5,
-// and the libraries that HDF5 needs). Loading these libraries takes more time than most verbs need.
+// The functions of matio. matio is loaded only when it is first used, because it needs 30 other
+// libraries (HDF5, and the libraries that HDF5 needs). Loading these libraries takes more time than
+// most verbs need.
 #pragma once
 
 #include <matio.h>

@@ -40,7 +40,7 @@ void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text)
   text += '\n';
 }
 
-/// Appends the line of the requests whose measures are not known.
+/// Appends one line that stands for all requests of the run that `take_overs` may lack.
 void AppendUnknown(const TakeOverRun& run, std::string& text) {
   const std::string columns = RequestColumns();
   const auto others = std::ranges::count(columns, ',') - std::ranges::count(kKeys, ',') + 1;

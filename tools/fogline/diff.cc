@@ -78,7 +78,7 @@ int RunDiff(const DiffArguments& arguments) {
   } else {
     fmt::print("equal: {} steps\n", step);
   }
-  // The remarks on a log are known if it was read to its end.
+  // The remarks on a log are known only if the log was read to its end.
   const auto remark = [](const log::RunLogReader& reader, const std::string& name) {
     if (!reader.run().note.empty()) Complain(fmt::format("{}: {}", name, reader.run().note));
   };

@@ -87,8 +87,8 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
-/// The set has HOST_COMMAND and DRIVER_COMMAND, each only if the log of a run in real time may lack
-/// published messages of this channel.
+/// The channels among HOST_COMMAND and DRIVER_COMMAND of which the log may lack published messages.
+/// The set is empty for a run in lockstep.
 runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
   runtime::ChannelSet commands;
   commands.set(IndexOf<arbitration_t>()).set(IndexOf<driver_command_t>());
@@ -96,14 +96,14 @@ runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
 }
 
 /// Whether an event may have happened before the step in which it is listed, because commands are
-/// missing. In real time, a step may have no command, so the result is true only if published
-/// messages may be missing.
+/// missing. In real time a step may have no command although the log is complete, so the result is
+/// true only if published messages may be missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
   return entry.earliest_step != entry.step &&
          (!events.run.realtime || UnloggedCommands(events.run).any());
 }
 
-/// The same for the events of a step.
+/// Whether an event of this step may have happened before the step.
 bool MayBeEarlier(const RunEvents& events, std::int64_t step) {
   return std::ranges::any_of(events.log.entries(), [&](const take_over::TakeOverEntry& entry) {
     return entry.step == step && MayBeEarlier(events, entry);

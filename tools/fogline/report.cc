@@ -38,7 +38,7 @@
 namespace fogline {
 namespace {
 
-// Beginning of MakeReport()'s pages.
+// Beginning of every page that MakeReport() makes.
 constexpr std::string_view kDocumentType = "<!DOCTYPE html>";
 
 struct ReportArguments {
@@ -213,7 +213,8 @@ std::vector<report::ReportMetric> MetricsOf(const runner::RunResult& result) {
   return out;
 }
 
-/// The content of a run on the report's page. May move the samples out of `run`.
+/// The content of a run on the report's page. Moves the samples out of `run` if the log has no
+/// gaps.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
   return {.name = name,

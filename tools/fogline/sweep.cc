@@ -140,7 +140,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) return Merge(arguments);
   const sweep::SweepPlan plan = MakePlan(arguments);
   const sweep::Shard shard = sweep::ParseShard(arguments.shard);
-  Scenario first = plan.base();  // throws for an impossible scenario
+  Scenario first = plan.base();  // becomes the scenario of the shard's first row
   plan.Configure(plan.ShardBegin(shard), 0, first);
   runner::CheckPossible(first, arguments.scenario);
   const std::filesystem::path out =

@@ -150,12 +150,12 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::stri
   return json;
 }
 
-/// A value as "80.80"; "-" without a value.
+/// A value in the form "80.80"; "-" if there is no value.
 std::string Cell(std::optional<double> value, int decimals = 2) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string("-");
 }
 
-/// A mean as "80.80", or with its deviation over seeds as "80.81 +- 2.64".
+/// A mean in the form "80.80". For several seeds also the standard deviation: "80.81 +- 2.64".
 std::string Spread(const stats::Statistics& of, int decimals = 2) {
   const auto deviation = of.deviation();
   return deviation ? fmt::format("{} +- {}", Cell(of.mean(), decimals), Cell(deviation, decimals))

@@ -75,7 +75,7 @@ struct TopArguments {
   bool json = false;
 };
 
-// Every run of this machine announces itself within this time.
+// Time within which every run of this machine announces itself.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
 
 watch::Following FollowingOf(const TopArguments& arguments) {

@@ -8,7 +8,7 @@
 
 namespace fogline::hosts {
 
-/// Returns the problems that this machine has with a network, each with its remedy.
+/// Returns the problems that this machine has with a network, each with its remedy if there is one.
 using NetworkCheck = std::function<std::vector<std::string>(const std::string& url)>;
 
 /// Does what the runner orders until stdin ends, the runner is silent for too long, or a signal

@@ -13,10 +13,11 @@
 namespace fogline::hosts {
 namespace {
 
-// Five seconds of ssh's ConnectTimeout, and time for the login on a busy machine.
+// Longest wait for the first message of a machine. It includes five seconds of ssh's
+// ConnectTimeout, and time for the login on a busy machine.
 constexpr Duration kGreetLimit = milliseconds(20'000);
-// The check sends messages for some milliseconds, and a machine without a route reports this
-// immediately. The limit is long enough for a busy machine.
+// Longest wait for the result of a check. A check sends messages for some milliseconds, and a
+// machine without a route reports this immediately. The limit is long enough for a busy machine.
 constexpr Duration kCheckLimit = milliseconds(20'000);
 // The file of a key has 64 digits and a line feed.
 constexpr std::size_t kMaxKeyBytes = 1024;

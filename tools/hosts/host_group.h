@@ -1,4 +1,4 @@
-// The other machines of a run. The destructor ends the roles there.
+// The other machines of a run. The destructor ends the roles on these machines.
 #pragma once
 
 #include <memory>

@@ -21,7 +21,7 @@ constexpr Duration kStartLimit = milliseconds(5000);
 // A machine that has not answered a sign of life for this time counts as out of sight.
 constexpr Duration kOutOfSight = 3 * kAliveEvery;
 
-/// A text of a message, safe to print.
+/// A text in a message. Its control characters are escaped, so it is safe to print.
 std::string TextIn(const nlohmann::json& message, const char* key) {
   return EscapeControls(message.at(key).get<std::string>());
 }
@@ -98,7 +98,7 @@ void RemoteHost::Look() {
   connection_.Look();
   try {
     while (true) {
-      if (version_.empty()) {  // the shell there may first print lines
+      if (version_.empty()) {  // the shell of the machine may first print lines
         const auto line = connection_.lines().TakeLine();
         if (!line) break;
         const auto message = nlohmann::json::parse(*line, nullptr, false);

@@ -1,5 +1,5 @@
-// Another machine of a run: starts and watches roles there, through `fogline host`. The destructor
-// ends the roles.
+// Starts and watches roles on another machine of a run, through `fogline host`. The destructor ends
+// the roles.
 #pragma once
 
 #include <sys/types.h>
@@ -67,7 +67,8 @@ class RemoteHost : public processes::RolePlace {
   /// Waits until `done` holds. @throws like Greet()
   template <class Condition>
   void Await(const Condition& done, TimePoint end, const char* what);
-  /// Counts all processes there as ended, because the connection has ended or a message is invalid.
+  /// Counts all processes of the machine as ended, because the connection has ended or a message is
+  /// invalid.
   void Lose(const std::string& nonsense = "");
   [[noreturn]] void Fail(const std::string& why) const;
 
@@ -78,7 +79,7 @@ class RemoteHost : public processes::RolePlace {
   std::string own_address_;
   std::optional<std::string> problems_;  // result of the check; "": none
   std::map<pid_t, Process> processes_;
-  std::map<Role, nlohmann::json> starts_;  // answers to the last order to start a role
+  std::map<Role, nlohmann::json> starts_;  // for each role, the answer to its last start order
   std::vector<Exit> exits_;
   std::string lost_;                      // why the connection has ended; "" while it is open
   std::optional<TimePoint> asked_since_;  // time of the oldest unanswered sign of life

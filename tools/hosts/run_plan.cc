@@ -26,7 +26,7 @@ std::size_t PlaceOf(HostPlan host, RunPlan& plan, std::string_view where) {
   if (found == plan.hosts.end()) {
     plan.hosts.push_back(std::move(host));
   } else if (host.programs.empty()) {
-    // The folder stays that of the laboratory's file or of another --on.
+    // The machine keeps the folder that the laboratory's file or another --on has given.
   } else if (found->programs.empty()) {
     found->programs = host.programs;
   } else if (found->programs != host.programs) {
@@ -36,7 +36,8 @@ std::size_t PlaceOf(HostPlan host, RunPlan& plan, std::string_view where) {
   return place;
 }
 
-/// Adds "ROLE=HOST". @param placed the roles of the earlier options; this role is added
+/// Adds the role and the machine of "ROLE=HOST" to the plan. @param placed the roles of the earlier
+/// options; the function adds this role
 /// @throws InputError
 void AddPlace(const std::string& text, std::set<Role>& placed, RunPlan& plan) {
   const std::string where = "--on " + text;

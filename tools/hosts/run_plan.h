@@ -17,7 +17,7 @@ namespace fogline::hosts {
 struct HostPlan {
   std::string name;         // for messages to the user
   std::string destination;  // for ssh: [USER@]HOST, or a name of ssh's configuration
-  std::string programs;     // folder of Fogline's programs there; "": the PATH there
+  std::string programs;     // folder of Fogline's programs on the machine; "": the machine's PATH
   bool operator==(const HostPlan&) const = default;
 };
 
@@ -35,7 +35,7 @@ struct RunPlan {
   bool empty() const { return places.empty(); }
 };
 
-/// The words of a command line that plan a run.
+/// The options of a command line from which MakePlan() makes a RunPlan.
 struct PlanWords {
   std::vector<std::string> on;  // ROLE=HOST or ROLE=HOST:FOLDER
   std::string lab;              // file of a laboratory
@@ -44,7 +44,7 @@ struct PlanWords {
   std::string relay_at;
 };
 
-/// The role with this name.
+/// The role with this name; nullopt if there is none.
 std::optional<Role> RoleNamed(std::string_view name);
 
 /// The reason why a role with this name cannot run on another machine; "" if it can.

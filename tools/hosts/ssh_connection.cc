@@ -43,7 +43,8 @@ const std::vector<std::string> kOptions{"-T", "-o", "BatchMode=yes", "-o", "Conn
 /// The command line of `fogline host` on the other machine.
 std::string Command(const HostPlan& host) {
   if (host.programs.empty()) return "exec fogline host";
-  // ssh starts commands in the home folder, so a folder there can have a relative path.
+  // ssh starts commands in the home folder, so a folder within the home folder can have a relative
+  // path.
   std::string folder = host.programs;
   if (folder.starts_with("~/")) folder = "./" + folder.substr(2);
   return fmt::format("exec {} host", ShellWord(folder + "/fogline"));

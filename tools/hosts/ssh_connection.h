@@ -30,8 +30,8 @@ class SshConnection {
   void Look();
   /// Whether ssh runs.
   bool open() const { return pid_ >= 0; }
-  /// Keeps a line of stdout that is not a message, such as a line that the shell there prints at
-  /// its start.
+  /// Keeps a line of stdout that is not a message, such as a line that the shell of the other
+  /// machine prints at its start.
   void Keep(const std::string& line) { printed_.Append(line + "\n"); }
 
   /// The last lines that ssh and `fogline host` have printed on stderr, and the lines of Keep().
@@ -47,7 +47,7 @@ class SshConnection {
   HostPlan host_;
   std::string ssh_;
   processes::Pipe errors_;
-  int socket_ = -1;  // this end of ssh's stdin and stdout
+  int socket_ = -1;  // the runner's end of the socket pair for ssh's stdin and stdout
   std::optional<JsonLines> lines_;
   processes::LastLines printed_;
   pid_t pid_ = -1;

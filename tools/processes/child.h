@@ -81,10 +81,10 @@ std::string HowItEnded(int status);
 std::filesystem::path ProgramBeside(std::string_view name);
 /// The command that builds a target of CMake; "" if the running program is not in a build folder.
 std::string BuildCommand(std::string_view target);
-/// The end of an error about a program that is missing, because not every build has it: the command
-/// that builds it; "" if the running program is not in a build folder.
+/// The end of an error text about a missing program that not every build has. It names the command
+/// that builds the program. It is "" if the running program is not in a build folder.
 std::string HowToBuild(std::string_view name);
-/// As ProgramBeside(), for a program that not every build has.
+/// The same as ProgramBeside(), but for a program that not every build has.
 /// @throws std::runtime_error when it is missing. The error names the command that builds it.
 std::filesystem::path BuiltProgramBeside(std::string_view name);
 /// The program of a role in the folder of the running program.

@@ -24,8 +24,9 @@ class ExternalRoles {
   /// The command that starts a role for this run, such as
   /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".
   std::string Command(Role role) const { return Command(NameOf(role)); }
-  /// Says for which roles the run waits, for how long, and which command starts a role; "" without
-  /// roles. Several roles share one command, in which ROLE stands for the name of the role.
+  /// The text that says for which roles the run waits, for how long, and which command starts a
+  /// role; "" without roles. Several roles share one command, in which ROLE stands for the name of
+  /// the role.
   std::string Text(const std::vector<Role>& roles) const;
   /// Which of these roles have come or gone since the last call, and which are missing; "" if
   /// nothing has changed, or the run has begun.
@@ -42,7 +43,7 @@ class ExternalRoles {
   std::string key_file_;
   Duration limit_;
   TimePoint began_;
-  std::set<Role> come_;  // the roles that News() has named as come
+  std::set<Role> come_;  // the roles whose arrival News() has reported
 };
 
 }  // namespace fogline::processes

@@ -40,7 +40,7 @@ class RolePlace {
   };
   /// The processes that have ended since the last call. Call it every few tens of milliseconds.
   virtual std::vector<Exit> Collect() = 0;
-  /// Whether no process runs there.
+  /// Whether the machine has no running process of the run.
   virtual bool empty() const = 0;
   /// Roles and process ids for the user, such as "world 4711, radar 4712".
   virtual std::string Describe() const = 0;
@@ -54,7 +54,7 @@ class RolePlace {
   virtual std::string WhyOutOfSight() const { return ""; }
 };
 
-/// ActivityOf() of a process on this machine.
+/// Does the work of RolePlace::ActivityOf() for a process on this machine.
 std::optional<std::int64_t> OwnActivityOf(pid_t pid);
 
 }  // namespace fogline::processes

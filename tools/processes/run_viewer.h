@@ -33,7 +33,7 @@ class RunViewer {
   bool Runs();
 
  private:
-  /// @param more the arguments that say what is shown, and at which port
+  /// @param more the arguments of fogline-web that say what it shows, and at which port
   /// @return false if fogline-web cannot be started
   bool Start(const std::vector<std::string>& more);
   /// Waits for the address, and prints it. @return false if no address comes within the limit
@@ -45,7 +45,7 @@ class RunViewer {
   WebChild web_;
   std::string address_;  // "http://127.0.0.1:7680/"; "": nothing was shown
   bool said_ = false;    // whether the user knows that there is no page
-  std::jthread late_;    // takes an address that comes after the limit
+  std::jthread late_;    // waits for an address that comes after the limit
 };
 
 }  // namespace fogline::processes

@@ -13,7 +13,8 @@ import sys
 import textwrap
 from typing import NamedTuple
 
-# The letter of Python's module struct, the type in Python, and the value of a new message.
+# For each number type of LCM: the letter of Python's module struct, the type in Python, and the
+# value in a new message.
 NUMBERS = {
     "boolean": ("?", "bool", "False"),
     "int8_t": ("b", "int", "0"),

@@ -49,15 +49,15 @@ class LogFiles {
  private:
   void Begin(TimePoint now);
   void RemoveEarlierRecording();
-  /// Removes the part of an event at the end of the file.
+  /// Removes an incomplete event from the end of the file.
   void CutTornEvent();
 
   std::filesystem::path file_;
   Rotation rotation_;
   std::vector<std::filesystem::path> files_;
   std::optional<log::EventLogWriter> log_;
-  std::vector<std::int64_t> ends_;  // ends of the events that are not flushed yet
-  std::int64_t flushed_ = 0;        // number of bytes before these events
+  std::vector<std::int64_t> ends_;  // where each event that is not flushed yet ends in the file
+  std::int64_t flushed_ = 0;        // number of bytes in the file before these events
   std::int64_t earlier_bytes_ = 0;
   std::int64_t removed_ = 0;
   TimePoint begun_{};

@@ -33,7 +33,7 @@ class MessageAssembler {
   /// @return the message that this packet completes; valid until the next call
   std::optional<Message> Add(const watch::Packet& packet);
 
-  /// Number of messages that were given up, because fragments did not come.
+  /// Number of messages that were given up, because fragments were missing.
   std::int64_t given_up() const { return given_up_; }
 
   /// Limits for messages that wait for fragments, as in LCM: 1000 messages, together 16 MiB. A

@@ -17,7 +17,8 @@ namespace fogline::record {
 
 class MessageQueue {
  public:
-  /// Successive events in the format of a log; the number of each event is 0.
+  /// Successive events in the format of a log. The number of each event is 0, because the writer of
+  /// the log numbers the events.
   using Chunk = std::vector<std::uint8_t>;
 
   /// Adds a message. Called by the thread that receives.

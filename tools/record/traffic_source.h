@@ -39,7 +39,7 @@ class TrafficSource {
   virtual int buffer_bytes() const = 0;
   /// Whether the messages have numbers by which a loss can be found.
   virtual bool is_numbered() const = 0;
-  /// Number of messages that were given up, because fragments did not come.
+  /// Number of messages that were given up, because fragments were missing.
   virtual std::int64_t given_up() const = 0;
 
  protected:

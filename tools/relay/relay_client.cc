@@ -22,8 +22,9 @@ using boost::system::error_code;
 // A client has to send its magic (the first bytes of the tcpq protocol) within this time after it
 // connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
-// The relay waits at most this long until a client reads. The time is our choice: it is longer than
-// a busy machine leaves a process without a processor.
+// If the queue of a client is half full, the relay stops reading from this client until the client
+// reads, but at most for this time. The time is our choice: even on a busy machine, a process waits
+// less than this time for a processor.
 constexpr std::chrono::seconds kLongestPause(5);
 
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
@@ -35,7 +36,7 @@ std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
 
 /// Acknowledges received data immediately. LCM's client sends a message in five pieces, and waits
 /// for the acknowledgement of the first piece before it sends the second piece. The kernel delays
-/// an acknowledgement by up to 40 ms unless this option is set again after each read.
+/// an acknowledgement by up to 40 ms, unless TCP_QUICKACK is set again after each read.
 void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
   const int on = 1;
   setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));
@@ -164,7 +165,7 @@ void RelayClient::Write() {
   asio::async_write(socket_, asio::buffer(sending_),
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->sending_.clear();
-                      // Frees the memory after a long queue.
+                      // If the queue was long, its memory is freed.
                       if (self->sending_.capacity() > kWorthACall) self->sending_.shrink_to_fit();
                       if (error) {
                         self->deaf_ = true;

@@ -19,8 +19,8 @@ namespace fogline::relay {
 
 class Relay;
 
-/// A client exists until its last operation has ended. The relay removes it from its list as soon
-/// as the client has left.
+/// The object of a client exists until its last operation has ended. The relay removes the client
+/// from the list of clients as soon as the client has left.
 class RelayClient : public std::enable_shared_from_this<RelayClient> {
  public:
   using tcp = boost::asio::ip::tcp;
@@ -32,13 +32,14 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   /// Sends a message if the client wants it; disconnects the client if its queue is full.
   void Offer(const runtime::tcpq::Frame& message);
 
-  /// Ends the connection and tells the relay. @param why "" if there is no error to report
+  /// Ends the connection and tells the relay. @param why the error to report; "" if there is none
   void Drop(const std::string& why);
 
  private:
   void Read();
-  /// Reads on, or pauses if the queue is half full: the client may publish faster than it reads,
-  /// and its own messages would then fill its queue.
+  /// Reads on, or pauses if the queue is half full. Without the pause, a client that publishes
+  /// faster than it reads would fill its queue with its own messages. If a pause has reached its
+  /// time limit, the relay reads on without another pause while the queue is still half full.
   void ReadOrPause();
   void ReadAfterPause();
   bool IsHalfFull() const;
@@ -60,7 +61,7 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
   bool paused_ = false;      // whether the relay waits before it reads on
-  bool has_waited_ = false;  // whether the relay has waited long enough with a queue this full
+  bool has_waited_ = false;  // whether a pause reached its limit, and the queue is still half full
   bool deaf_ = false;        // whether writing has failed; the client's messages are still read
   bool gone_ = false;
 };

@@ -19,14 +19,14 @@ constexpr std::size_t kMaxKnown = 1000;
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
 // Budget of processor time for new channel names, in seconds. The budget is full at first. An empty
-// budget is full again after ten seconds. Boost gives up a match that takes too many steps. A match
-// below this limit of Boost takes up to a fifth of a second, and a client may have many
-// expressions.
+// budget is full again after ten seconds. Boost itself does not limit the time enough: it gives up
+// a match that takes too many steps, but a match within this limit takes up to a fifth of a second,
+// and a client may have many expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// Processor time for each name that is not charged to the budget. Tens of simple expressions take
-// no longer, so new names do not use the budget of a client with a few simple expressions. The
-// relay needs about the same time to receive a name.
+// For each new name, this much processor time is free: it is not charged to the budget. Tens of
+// simple expressions take no longer, so new names do not use the budget of a client with a few
+// simple expressions. The relay needs about the same time to receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {
@@ -45,8 +45,8 @@ std::string Subscriptions::Add(std::string_view pattern) {
   if (bytes_ + pattern.size() > most)
     return fmt::format("more than {} bytes of subscriptions", most);
   try {
-    // A copy that ends with a zero, because Boost 1.81 reads one character beyond the end of
-    // expressions such as "[".
+    // This copy ends with a zero byte. Boost 1.81 needs the zero, because it reads one character
+    // beyond the end of expressions such as "[".
     std::string text(pattern);
     boost::regex expression(text, boost::regex::perl);
     entries_.push_back({std::move(text), std::move(expression)});

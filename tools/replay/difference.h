@@ -14,7 +14,7 @@ namespace fogline::replay {
 struct Difference {
   std::int64_t step = 0;
   std::string channel;
-  std::string field;  // "name[index]"; or a reason in parentheses, such as "(message)": missing
+  std::string field;  // "name[index]", or a reason such as "(message)" if one message is missing
   std::string a;
   std::string b;
 };

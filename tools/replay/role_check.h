@@ -30,7 +30,7 @@ std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run, const log::DriverI
 /// @throws InputError for a step that cannot be computed; the error text lacks the name of the log
 void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles);
 
-/// Result of computing the steps of a run again from its log.
+/// The result of a verification, which computes the steps of a run again from its log.
 struct Verification {
   struct LeftOut {
     Role role;

@@ -1,5 +1,6 @@
 // The files of the HTML pages of reports and studies, as texts in the program. assets.cmake writes
-// the definitions. The texts of uPlot are empty if its package of npm was missing.
+// the definitions. The texts of uPlot are empty if its npm package was missing when the build was
+// configured.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// One panel of a figure: a uPlot chart of one or more runs over time. A core is a second colour
-// along the middle of a line.
+// One panel of a figure: a uPlot chart of one or more runs over time. If there are more runs than
+// colours, some lines have a core: a second colour along the middle of the line.
 
 const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // smallest distance of ticks, in pixels
 const VALUE_AXIS_WIDTH = 50;               // the same in all charts, so that time axes are aligned
@@ -88,7 +88,7 @@ function drawHuman(chart, run) {
   }
 }
 
-/** Shows when the human drives in each of several runs: one bar for each, above the plot. */
+/** Shows when the human drives in each of several runs: one bar for each run, above the plot. */
 function drawLanes(chart, runs) {
   const lanes = runs.filter((run) => run.human.length);
   lanes.forEach((run, lane) => {

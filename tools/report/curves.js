@@ -1,6 +1,7 @@
-// Figure A: safety improvement and redundant human engagement as functions of the threshold, with
-// bands over the seeds. This file also has the state that figures A and B share: the threshold at
-// the reader's cursor.
+// Figure A: safety improvement and redundant human engagement as functions of the threshold. Each
+// curve has a band for the confidence interval of the mean, and a band for the percentiles of the
+// seeds. This file also has the state that figures A and B share: the threshold at the reader's
+// cursor.
 
 const {curves} = report;
 
@@ -32,7 +33,10 @@ function around(middle, half) {
   return middle == null || half == null ? [null, null] : [middle - half, middle + half];
 }
 
-/** Smallest and largest number with a margin; the range is at least `least`. */
+/**
+ * Smallest and largest of the values, with a margin. The margin is 5 % of the range of the values,
+ * or of `least` if `least` is larger. [0, 1] without values.
+ */
 function widened(values, least) {
   const numbers = values.filter((value) => value != null);
   if (numbers.length === 0) return [0, 1];
@@ -73,7 +77,9 @@ function showWholeCurves() {
   showRow();
 }
 
-/** Lets `draw` paint only within the plot, in canvas pixels. */
+/**
+ * Calls `draw(ctx)`, and clips everything that `draw` paints to the plot. Units are canvas pixels.
+ */
 function withinPlot({ctx, bbox}, draw) {
   ctx.save();
   ctx.beginPath();

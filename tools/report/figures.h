@@ -19,10 +19,11 @@ struct Column {
   double (*value)(std::span<const metrics::Sample> samples, std::size_t index);
 };
 
-/// Colours on white paper, as in base.css. RunStyle() distinguishes runs beyond the last colour.
-/// The colours are tested under simulated protanopia and deuteranopia (Machado, Oliveira &
-/// Fernandes 2009). Any two of the first five colours are at least 25 apart in CIELAB, and any two
-/// of all eight colours at least 15. On white each colour has a contrast of 3 or more.
+/// Colours on white paper, as in base.css. If there are more runs than colours, RunStyle()
+/// distinguishes the runs. The colours are tested under simulated protanopia and deuteranopia, two
+/// kinds of colour blindness (Machado, Oliveira & Fernandes 2009). In CIELAB any two of the first
+/// five colours are at least 25 apart, and any two of all eight colours are at least 15 apart. On
+/// white each colour has a contrast of 3 or more.
 inline constexpr std::array<std::string_view, 8> kPalette{
     "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
 inline constexpr std::size_t kPaletteSize = kPalette.size();

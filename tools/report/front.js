@@ -1,5 +1,5 @@
-// Figure B: safety improvement, and its cost in human engagement. The figure has one point for each
-// threshold, the Pareto front, and the published points.
+// Figure B: safety improvement, and its cost in human engagement. The figure has the points of the
+// thresholds, the Pareto front, and the published points.
 
 /** Index of the point nearest to the cursor. */
 function nearestPoint(chart) {
@@ -39,7 +39,10 @@ function drawLabels(chart) {
   }
 }
 
-/** Makes a ring around the point at the reader's cursor, with the thresholds of this point. */
+/**
+ * Makes a ring with a text beside it. Returns a function that moves the ring to a point, and shows
+ * the thresholds of this point.
+ */
 function makeSpot(chart) {
   const text = make("span");
   const spot = make("div", {class: "spot", "aria-hidden": "true"}, text);

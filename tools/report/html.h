@@ -8,10 +8,10 @@
 
 namespace fogline::report {
 
-/// `text` as HTML text or attribute value.
+/// `text`, escaped for use as HTML text or as an attribute value.
 std::string EscapeHtml(std::string_view text);
 
-/// JSON text for a script element: it contains no "<".
+/// The JSON text with each "<" escaped, because "</script>" in the text would end a script element.
 std::string EscapeScript(std::string_view json);
 
 /// `page` with every {{name}} replaced by its value. Placeholders within values are not replaced.
@@ -19,7 +19,8 @@ std::string EscapeScript(std::string_view json);
 std::string Fill(std::string_view page,
                  std::initializer_list<std::pair<std::string_view, std::string>> values);
 
-/// A figure that a script draws. The texts are HTML. @param axis name of the y axis
+/// The frame of a figure, into which a script draws. The texts are HTML. @param axis name of the y
+/// axis
 std::string FigureElement(std::string_view id, std::string_view heading, std::string_view caption,
                           std::string_view axis);
 

@@ -29,7 +29,7 @@ function swatch(curve, overlaid, shared) {
   return lineSwatch(stroke, overlaid || curve.limit ? curve.dash : [], curve.limit ? 2 : 2.5);
 }
 
-/** Explains marks and shades: [[class of the mark, text]]. */
+/** Makes a list that explains marks and shades. `keys` is [[class of the mark, text], ...]. */
 function makeKeys(keys) {
   return make("ul", {class: "keys"}, ...keys.map(([name, text]) =>
       make("li", {}, make("span", {class: `key ${name}`}), text)));

@@ -21,10 +21,10 @@ inline constexpr double kLongestTtc_s = 1000;
 bool IsTimeToCollision(std::string_view name);
 
 /// Formats a finite value with its meaningful digits. The unit limits the decimals: to a
-/// millimetre, or to a hundredth of a second. A value has at most four significant digits, except
-/// for a percentage. A whole number without unit has no decimals. 0 is "0". Any other value that
-/// rounds to 0 becomes "< 0.001" or "> -0.001". "> 1000" stands for any time to collision above
-/// kLongestTtc_s.
+/// millimetre, or to a hundredth of a second. Decimals after the fourth significant digit are left
+/// out, except in a percentage. A whole number without unit has no decimals. 0 is "0". Any other
+/// value that rounds to 0 becomes "< 0.001" or "> -0.001". "> 1000" stands for any time to
+/// collision above kLongestTtc_s.
 /// @param name as in VisitMetrics()
 std::string MetricText(std::string_view name, double value, std::string_view unit);
 

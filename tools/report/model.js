@@ -54,7 +54,10 @@ function placeOf(values, x) {
   return Math.max(0, low - 1);
 }
 
-/** Time between samples, in s, of the first shown run that has several samples. */
+/**
+ * Time between samples, in s, of the first shown run that has several samples; 1 without such a
+ * run.
+ */
 function timeStep() {
   const run = state.runs.find(({columns}) => columns.time_s.length > 1);
   return run ? run.columns.time_s[1] - run.columns.time_s[0] : 1;

@@ -21,8 +21,9 @@ std::string Dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. A value of
-/// 1e9 or more is not rounded: its text is hardly longer than with six decimals.
+/// Rounds to six decimals (a micrometre for a length). So the text has a third of the bytes that it
+/// would have without rounding. A value of 1e9 or more is not rounded: its text is hardly longer
+/// than with six decimals.
 double Rounded(double value) {
   constexpr double kGrid = 1e6;
   constexpr double kLargest = 1e9;

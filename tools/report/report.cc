@@ -128,7 +128,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
-/// A remark for each run of which something is unknown.
+/// A remark for each run in which some values are unknown.
 std::string UnknownNotes(std::span<const ReportRun> runs, std::string ReportRun::*unknown) {
   std::string notes;
   for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -174,8 +174,8 @@ std::string SafetyText(const metrics::RunMetrics& measures) {
                      LengthText(*measures.max_compromised_safety_m));
 }
 
-/// Whether a run's safety improvement covers all steps of the baseline. If a log or a run ends
-/// early, the improvement covers only the steps before the end.
+/// Whether a run's safety improvement covers all steps of the baseline, the run without traded
+/// control. If a log or a run ends early, the improvement covers only the steps before the end.
 bool IsComparable(const Told& told, const Told* baseline) {
   const auto is_whole = [](const Told& run) {
     return run.run->shortage.empty() && !run.measures.collision_time_s;
@@ -183,7 +183,8 @@ bool IsComparable(const Told& told, const Told* baseline) {
   return baseline != nullptr && told.run->si_pct && is_whole(told) && is_whole(*baseline);
 }
 
-/// Outcome of a run, compared with its paired run without traded control, if it has a paired run.
+/// The outcome of a run as text. It is compared with the run without traded control if
+/// IsComparable() is true.
 std::string OutcomeText(const Told& told, const Told* baseline) {
   if (!IsComparable(told, baseline)) {
     const bool saved = baseline != nullptr && baseline->measures.collision_time_s &&

@@ -1,6 +1,6 @@
 // The figures of a page of studies: lines with bands over a quantity, or rows of points with
-// whiskers, one row for each category. Each figure has a legend. A reader can show and hide series
-// there, and the legend prints the values at the cursor. The axes are in study_axes.js.
+// whiskers, one row for each category. Each figure has a legend. In the legend a reader can show
+// and hide series, and read the values at the cursor. The axes are in study_axes.js.
 
 const figures = JSON.parse(document.getElementById("study-data").textContent);
 
@@ -134,7 +134,10 @@ function drawIntervals(chart, figure, {data, low, high}) {
   ctx.restore();
 }
 
-/** The legend's lists: the initially shown series, and the others, folded if there are many. */
+/**
+ * The lists of the legend. If there are many series, the first list has the series that are shown
+ * at first, and a folded list has the others.
+ */
 function legendList(figure, items) {
   const list = (parts) => make("ul", {}, ...parts);
   if (items.length <= MOST_IN_LEGEND) return [list(items)];
@@ -251,7 +254,7 @@ function build() {
   drawMissing();
 }
 
-/** Draws the figures that are unfolded and not drawn. */
+/** Draws the figures that are unfolded and not drawn yet. */
 function drawMissing() {
   const drawn = new Set(charts.map(({figure}) => figure));
   figures.filter((figure) => isUnfolded(figure) && !drawn.has(figure)).forEach(makeChart);

@@ -1,5 +1,5 @@
 // The axes of a figure of studies: positions of values, ranges, ticks, and the rows of categories.
-// study.js follows in the same script. It has the theme.
+// study.js follows in the same script, and defines the variable `theme`.
 
 const SPREAD = 0.6;  // share of a category's row in which its series lie
 const ROW = {point: 11, line: 14, gap: 10, names: 0.44};  // in pixels; names: share of the width

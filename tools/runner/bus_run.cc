@@ -51,8 +51,8 @@ constexpr Duration kHangLimit = milliseconds(2000);
 // not sent again.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
-/// The builds of the runner's own programs; a role that is started elsewhere may have another
-/// build.
+/// The builds of the programs in the folder of the runner. A role that is started elsewhere may
+/// have another build.
 runtime::RoleBuilds OwnBuilds(bool in_memory) {
   runtime::RoleBuilds builds{};
   for (const RoleInfo& info : kRoles) {
@@ -73,8 +73,8 @@ std::int64_t NewerThanEveryRunner() {
 
 runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
                                                       const RunOptions& options, bool in_memory) {
-  // The duration of a step at this pace. The stall limit is longer by this time, because a slow
-  // pace is not a stall.
+  // The duration of a step at this pace. It is added to the stall limit, because a slow pace is not
+  // a stall.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
   return {.run_id = resume ? resume->front.run_id : RunIdOf(options),

@@ -1,4 +1,5 @@
-// A run over LCM: every role is a node in one process (memq), or a process of its own (any URL).
+// A run over LCM. With memq, all roles are nodes in one process. With any other network, every role
+// is a process of its own.
 #pragma once
 
 #include <filesystem>

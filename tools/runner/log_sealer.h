@@ -1,6 +1,5 @@
-// Protects the log of a run. The log sealer of the runner checks that the file on the disk has the
-// bytes that the run's recorder has written. Then it seals the file, so that a later change is
-// noticed.
+// Protects the log of a run. The runner's LogSealer checks that the file on the disk has the bytes
+// that the run's recorder has written. Then it seals the file, so that a later change is noticed.
 #pragma once
 
 #include <sys/types.h>

@@ -21,7 +21,8 @@ std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role
 /// The processes whose build differs from the runner's build, including processes that have ended.
 std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator);
 
-/// Reports the processes that have an awaited role but belong to another run, each process once.
+/// Reports the processes whose role this run waits for, but which belong to another run. Each
+/// process is reported once.
 class BusyElsewhere {
  public:
   BusyElsewhere(std::int64_t run_id, std::function<void(const std::string&)> say)

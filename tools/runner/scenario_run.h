@@ -64,7 +64,7 @@ struct RunOptions {
   runtime::TrafficOptions traffic;
   bool progress = true;          // show a bar of the steps if the run takes long
   bool announce = false;         // print on stderr the network of the run and its processes
-  bool wall_clock = false;       // in lockstep: the log has the wall clock of each step
+  bool wall_clock = false;       // in lockstep: write the wall clock of each step into the log
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
   /// Called with the run's id and the URL of its network, before any role is started. The function
@@ -99,14 +99,14 @@ struct RunResult {
   std::vector<Restarts> restarts;
   std::vector<runtime::OtherBuild> other_builds;  // roles whose build differs from the runner's
   std::optional<replay::Verification> verification;
-  bool checked = true;        // every byte of the log agrees with the recorder's reports
+  bool checked = true;        // whether every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
-  metrics::Lack lack;  // of the log: says which measures are unknown (IsKnown)
+  metrics::Lack lack;  // what the log lacks: decides which measures are unknown (IsKnown)
   std::vector<metrics::FollowerMetrics> followers;    // nearest to the host first
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
-  std::vector<metrics::Sample> samples;               // if requested
+  std::vector<metrics::Sample> samples;               // empty if the caller did not ask for them
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 
@@ -117,8 +117,9 @@ struct RunResult {
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
-/// The reason why a scenario cannot run in real time at this speed: its step would be shorter than
-/// nine processes need. "" if the scenario can run. @param speed simulated seconds per second
+/// The reason why a scenario cannot run in real time at this speed: its steps would be shorter than
+/// the time that nine processes need for a step. "" if the scenario can run. @param speed simulated
+/// seconds per second
 std::string WhyTooFast(const Scenario& scenario, double speed);
 
 /// Opens the network of a run once, with the key and the faults of the run, and closes it. So a

@@ -118,7 +118,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
     coordinator_.Hinder(child.role, error.what());
     return;
   }
-  if (child.ended_at_once > 1) return;  // one line for all tries
+  if (child.ended_at_once > 1) return;  // after the second early end, no restart is reported
   options_.say(fmt::format("{} ({}) {}; started again as pid {} ({} of {})", NameOf(child.role),
                            PidText(*child.place, before), child.death, child.pid,
                            child.policy.restarts(), child.policy.limit()));
@@ -130,8 +130,8 @@ void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
-  // The process before it had the same arguments. So something is missing that may come back, such
-  // as the network.
+  // A restarted process may end by itself before its first STATUS. It has the same arguments as the
+  // process before it. So something is probably missing that may come back, such as the network.
   const auto& status = coordinator_.member(exit.role).status;
   const bool met = status && status->pid == exit.pid;
   if (!exit.killed && !met && child->policy.restarts() > 0) {

@@ -1,9 +1,10 @@
 // The supervisor of a run's processes, on this machine and on others. It starts and watches the
 // processes. It restarts a process that is killed, hangs or is deaf. A process that exits by itself
-// has printed the reason, and is not started again. (But if it was started again, and ends before
-// its first STATUS, it is started until the stall timeout ends the run.) In lockstep its exit ends
-// the run. A run in real time goes on without this process if RunCoordinator::GoesOnWithout() is
-// true, the process was not deaf, and restarts are allowed.
+// has printed the reason, and is not started again. (There is one exception: a restarted process
+// may exit before its first STATUS. It is then started again and again, until the stall timeout
+// ends the run.) In lockstep, the exit of a process by itself ends the run. A run in real time goes
+// on without this process if RunCoordinator::GoesOnWithout() is true, the process was not deaf, and
+// restarts are allowed.
 #pragma once
 
 #include <functional>
@@ -96,7 +97,7 @@ class Supervisor {
   runtime::Bus& bus_;
   runtime::RunCoordinator& coordinator_;
   Options options_;
-  processes::ProcessGroup group_;  // of this machine
+  processes::ProcessGroup group_;  // the processes on this machine
   std::vector<processes::RolePlace*> places_;
   std::vector<Child> children_;
   std::set<Role> deaf_;  // deaf roles that were reported

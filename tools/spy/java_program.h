@@ -21,7 +21,7 @@ std::filesystem::path RequireJava();
 void RequireScreen();
 
 /// A jar in the folder of --jars, or in the system's folders if `jars` is "".
-/// @param package of Debian that has the jar
+/// @param package the Debian package that has the jar
 /// @throws InputError, std::runtime_error that names the missing package
 std::filesystem::path FindJar(const std::filesystem::path& jars, const std::string& name,
                               const char* package);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 bool Readable(const fs::path& file) { return access(file.c_str(), R_OK) == 0; }
 
 /// Connects to a socket of this machine, and closes the connection. @param name the name of a file,
-/// or an abstract name after a zero byte. @return 0, or errno
+/// or an abstract name after a zero byte. @return 0 if the connection succeeds, otherwise errno
 int TryToConnect(std::string_view name) {
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
   if (name.size() >= sizeof(address.sun_path)) return ENAMETOOLONG;

@@ -1,5 +1,5 @@
 // Computes units of work on all cores and delivers their results in order, within constant memory
-// (oneTBB pipeline). Link TBB::tbb.
+// (oneTBB pipeline). A program that uses this header must link TBB::tbb.
 #pragma once
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -17,8 +17,8 @@
 
 namespace fogline::stats {
 
-/// Units in progress for each thread: enough to keep all threads busy while one slow unit delays
-/// the delivery of the units after it.
+/// Number of units in progress for each thread. It is large enough to keep all threads busy while
+/// one slow unit delays the delivery of the units after it.
 inline constexpr int kUnitsPerJob = 4;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads.

@@ -16,15 +16,15 @@ namespace fogline::study {
 /// interval's ends is at most a tenth of the interval's width.
 inline constexpr std::int64_t kReplicates = 1000;
 
-/// Makes replicates of a set of runs. A replicate draws as many runs as there are, with
-/// replacement. The draws are the same on every machine. Two statistics computed with the same
-/// weights are paired, run by run.
+/// Makes replicates of a set of runs. A replicate draws as many runs as the set has, with
+/// replacement: it can contain a run several times, or not at all. The draws are the same on every
+/// machine. Two statistics that are computed with the same weights are paired, run by run.
 class Resampling {
  public:
   Resampling(std::size_t runs, Stream stream) : runs_(runs), stream_(stream) {}
 
-  /// Sets `weights[run]` to the number of times that the replicate contains the run. The sum is the
-  /// number of runs.
+  /// Sets `weights[run]` to the number of times that the replicate contains the run. The sum of the
+  /// weights is the number of runs.
   void Draw(std::int64_t replicate, std::vector<double>& weights) const;
 
  private:

@@ -24,7 +24,8 @@ struct Claim {
   Estimate difference;
   double margin = 0;        // for kEqual: the largest difference that is too small to matter
   std::optional<double> p;  // p-value of a test without an interval, such as McNemar's
-  /// A p-value that is adjusted for all comparisons already; nullopt: Holm's correction follows.
+  /// The p-value, if it is already adjusted for all comparisons. nullopt: CheckClaims() adjusts the
+  /// p-value by Holm's method.
   std::optional<double> p_holm = std::nullopt;
   std::string hindrance;  // why the difference cannot support the claim; "" if it can
 };

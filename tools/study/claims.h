@@ -15,8 +15,8 @@
 namespace fogline::study {
 
 /// A difference of compromised safety that is too small to matter, m. The value is our choice. In
-/// paper.json, the effect of the fog is 0.015 m, about eight times as much. A driver notices only
-/// far larger differences.
+/// paper.json without traded control, the mean compromised safety in fog is 0.015 m, about eight
+/// times as much. A driver notices only far larger differences.
 inline constexpr double kNoShortfall_m = 0.002;
 
 /// The names of a case and of a variant.
@@ -31,7 +31,8 @@ struct CellName {
 /// @throws std::out_of_range if there is no such case or variant
 Cell CellOf(const Comparison& comparison, const CellName& name);
 
-/// A claim before its runs: its text, and the cells and the measure that it compares.
+/// The plan of a claim, before its runs: the text, the measure, and the cells or the level that the
+/// claim compares.
 struct PlannedClaim {
   std::string says;
   CellName cell;
@@ -39,13 +40,14 @@ struct PlannedClaim {
   std::string measure;
   Sign sign = Sign::kLess;
   double margin = 0;  // for kEqual, in the unit of the measure
-  double level = 0;   // in the unit of the measure
+  double level = 0;   // in the unit of the measure; used if `other` is nullopt
 };
 
-/// The claim that a measure's mean difference, cell `a` minus cell `b`, has this sign.
+/// The claim that the mean of a difference has this sign. The difference is the measure in cell `a`
+/// minus the measure in cell `b`.
 PlannedClaim PairClaim(std::string says, CellName a, CellName b, std::string_view measure,
                        Sign sign, double margin = 0);
-/// The claim that a measure's mean differs from `level` with this sign.
+/// The claim that the mean of a measure, minus `level`, has this sign.
 PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measure, Sign sign,
                         double level);
 
@@ -60,10 +62,10 @@ std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const Planne
 /// p-value of the claim, not adjusted; 1 if the claim has a hindrance.
 double PValueOf(const Claim& claim);
 
-/// Checks the claims of one study together. A claim holds if the difference has the claimed sign
-/// and the p-value adjusted by Holm is below 5 %. A p-value that is adjusted already stays as it
-/// is. Otherwise the claim fails. If `few_runs` is true (fewer seeds than the study's default), it
-/// is open instead.
+/// Checks the claims of one study together. A claim holds if the difference has the claimed sign,
+/// and if the claim's p-value, adjusted by Holm, is below 5 %. If Claim::p_holm is set, it is this
+/// adjusted p-value. A claim with a hindrance does not hold. A claim that does not hold fails. But
+/// if `few_runs` is true (fewer seeds than the study's default), it stays open.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "study policy: 2 of 9 claims fail:", then a line for each failed claim; "" if no claim fails.

@@ -52,7 +52,7 @@ void RequireNamesWithoutCommas(const std::vector<Named>& all) {
 }
 
 /// Whether the variant has no traded control. Each case has a run without traded control, even if
-/// it has no such variant.
+/// every variant of the study has traded control.
 bool IsWithoutTradedControl(const StudyVariant& variant) {
   return variant.overrides.size() == 1 && variant.overrides.front() == kWithoutTradedControl;
 }

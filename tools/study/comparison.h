@@ -55,7 +55,7 @@ struct ComparedMetric {
   std::string description;
 };
 std::span<const ComparedMetric> ComparedMetrics();
-/// @throws std::out_of_range
+/// Index of a measure in ComparedMetrics(). @throws std::out_of_range if there is no such measure
 std::size_t PlaceOfMetric(std::string_view name);
 
 /// One variant in one case.
@@ -76,7 +76,8 @@ class Comparison {
   /// because commas separate the cells of a CSV file
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
-  /// Uses finished runs. @param values by case, variant, measure and seed
+  /// Uses finished runs.
+  /// @param values of all measures in all runs, ordered by case, then by variant, measure and seed
   /// @throws std::invalid_argument if the number of values is wrong
   Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> variants, std::int64_t seeds,
              std::vector<double> values);
@@ -87,18 +88,19 @@ class Comparison {
   /// Number of runs, including those without traded control.
   std::int64_t runs() const;
 
-  /// A measure in the runs of a cell, seed by seed; NaN if a run lacks it.
+  /// The values of a measure in the runs of a cell, seed by seed; NaN for a run without a value.
   std::span<const double> Values(Cell cell, std::string_view measure) const;
   Estimate Mean(Cell cell, std::string_view measure) const;
   /// The difference a - b, paired seed by seed.
   Estimate Difference(Cell a, Cell b, std::string_view measure) const;
   /// Share of runs with a collision.
   metrics::EventShare Collisions(Cell cell) const;
-  /// A measure with its interval, for figures and files. It is Mean(), but the interval of
-  /// "collided" comes from Collisions().
+  /// The mean of a measure with its interval, for figures and files. It equals Mean(), except that
+  /// the interval of "collided" comes from Collisions().
   Estimate Point(Cell cell, std::string_view measure) const;
-  /// Number of pairs of runs that end early: at least one run collides, or the two runs differ in
-  /// length. Sums and means over time then lack the part after the end.
+  /// Number of pairs of runs that end early. A pair ends early if at least one of its runs
+  /// collides, or if the two runs differ in length. Sums and means over time then lack the steps
+  /// after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
   /// p-value of the difference of `collided`, by the exact test of McNemar over the pairs.
   double PValueOfCollisions(Cell a, Cell b) const;
@@ -116,18 +118,21 @@ class Comparison {
   /// `reference`. A difference has an interval, an effect size (mean divided by standard deviation
   /// of the paired differences, Cohen's d_z), and a p-value. The p-value is also adjusted by Holm
   /// for all differences of the file. The p-value of `collided` comes from McNemar's test, and all
-  /// other p-values come from the t test. If pairs of runs are cut short, the file has their
-  /// number, and measures other than `collided` have no p-value.
+  /// other p-values come from the t test. If pairs of runs end early (PairsCutShort()), the file
+  /// has the number of these pairs. Then the differences of all measures other than `collided` have
+  /// no p-value.
   std::string Csv(std::size_t reference) const;
-  /// Points with intervals. Either the variants are on the x axis and each case is a series, or the
-  /// cases are on the x axis and each variant is a series.
+  /// A figure of a measure: points with intervals. If `cases_on_axis` is true, the cases are on the
+  /// x axis and each variant is a series. Otherwise the variants are on the x axis and each case is
+  /// a series.
   report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                                bool cases_on_axis = false) const;
   /// A table with one row for each of these cells. A row has the mean and the interval of each
   /// measure.
   report::StudyTable TableOf(std::string caption, std::string kind, std::span<const NamedCell> rows,
                              std::span<const std::string_view> measures) const;
-  /// Tables with one row for each variant of a case, and with one row for each case of a variant.
+  /// TableOfCase(): a table of one case, with one row for each variant. TableOfVariant(): a table
+  /// of one variant, with one row for each case.
   report::StudyTable TableOfCase(std::size_t test_case,
                                  std::span<const std::string_view> measures) const;
   report::StudyTable TableOfVariant(std::size_t variant,

@@ -39,8 +39,8 @@ std::vector<StudyCase> HumanKinds() {
           {std::string(kWholeName), "dense_fog.json", kWholeHuman}};
 }
 
-/// The paper's driver and a complete human model in fog of every density. Each density has a pair
-/// of cases. These cases follow the cases of HumanKinds().
+/// Two cases for each density of the fog: one with the paper's driver, and one with a complete
+/// human model. In the study these cases follow the cases of HumanKinds().
 std::vector<StudyCase> Densities() {
   std::vector<StudyCase> cases;
   for (const double visibility_m : kDensities_m) {
@@ -129,7 +129,7 @@ std::vector<PlannedClaim> DriverClaims() {
   return claims;
 }
 
-/// Those claims that support the answer, repeated with realistic noise.
+/// Repeats, with realistic noise, the claims that support the answer.
 std::vector<PlannedClaim> NoisyDriverClaims() {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);

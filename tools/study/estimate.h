@@ -11,7 +11,7 @@
 namespace fogline::study {
 
 inline constexpr double kPercent = 100;
-/// Probability at each end of an interval of 95 %.
+/// Probability beyond each end of an interval of 95 %.
 inline constexpr double kTail = 0.025;
 
 /// Mean over n runs with its 95 % confidence interval (Student's t). The mean is NaN without a run,
@@ -38,11 +38,12 @@ Estimate EstimateOf(std::span<const double> values);
 /// @pre equal sizes
 Estimate PairedDifference(std::span<const double> a, std::span<const double> b);
 
-/// PairedDifference() of yes/no values, where a value above 0 is a "yes". With b pairs in which
-/// only `a` has a "yes", and c pairs in which only `b` has one, the mean is (b - c)/n. The interval
-/// has the bounds of Clopper & Pearson of b/n and c/n, each at 97.5 %: [low(b) - high(c), high(b) -
-/// low(c)] contains the true difference with a probability of at least 95 % (Bonferroni). It is
-/// within [-1, 1], and not empty if no pair differs.
+/// PairedDifference() of yes/no values. A value above 0 is a "yes". Of the n pairs, b pairs have a
+/// "yes" only in `a`, and c pairs have a "yes" only in `b`. The mean is (b - c)/n. The interval is
+/// [low(b) - high(c), high(b) - low(c)]. Here low() and high() are the bounds of Clopper & Pearson
+/// of b/n and c/n, each at 97.5 %. The interval contains the true difference with a probability of
+/// at least 95 % (Bonferroni). It is within [-1, 1], and its width is above 0 even if no pair
+/// differs.
 /// @pre equal sizes, and no value is missing
 Estimate PairedShareDifference(std::span<const double> a, std::span<const double> b);
 
@@ -55,26 +56,27 @@ enum class Verdict {
 };
 Verdict VerdictOf(const Estimate& difference);
 
-/// p-value of the hypothesis that a mean is 0, by the two-sided t test. The standard error is
-/// computed from the interval, which may also come from a bootstrap. Without an interval the
-/// p-value is 1.
+/// p-value of the null hypothesis that a mean is 0, by the two-sided t test. The standard error is
+/// computed from the interval, which may also come from a bootstrap. The p-value is 1 if there is
+/// no interval, or if some values are infinite.
 double PValueOfSign(const Estimate& estimate);
-/// p-value of the hypothesis that a mean is farther from 0 than `margin`, by two one-sided t tests
-/// (Schuirmann 1987).
+/// p-value of the null hypothesis that a mean is farther from 0 than `margin`, by two one-sided t
+/// tests (Schuirmann 1987).
 double PValueOfEqual(const Estimate& estimate, double margin);
 
-/// "12.3 [12.0, 12.6]"; "–" without a mean; "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
+/// Mean and interval as text, such as "12.3 [12.0, 12.6]"; "–" without a mean. If some values are
+/// infinite: "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
 /// Text() with 2 to 6 decimals, so that the width of the interval has two digits.
 std::string Text(const Estimate& estimate);
-/// "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
+/// The share as text, such as "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
 std::string Text(const metrics::EventShare& share);
-/// "12.3"; "–" for NaN and infinity.
+/// The number as text, such as "12.3"; "–" for NaN and infinity.
 std::string Text(double value, int decimals);
 
 /// A number in a CSV file; empty for NaN and infinity.
 std::string CsvText(double value);
-/// "12.3,12,12.6": mean and interval in a CSV file.
+/// Mean and interval as three cells of a CSV file, such as "12.3,12,12.6".
 std::string CsvText(const Estimate& estimate);
 
 }  // namespace fogline::study

@@ -21,9 +21,9 @@ class PairedWorker {
   /// Runs all `scenarios` with this seed. The first scenario has no traded control. The other runs
   /// are paired with its run. The result does not contain the first run.
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
-  /// The measures of the last run without traded control, paired with itself. They equal the
-  /// measures of a second run of this scenario, so such a run is not needed. @param scenario the
-  /// first one of the last Compute()
+  /// The measures of the run without traded control that the latest Compute() has made, paired with
+  /// itself. A second run of this scenario would have the same measures, so it is not made.
+  /// @param scenario the first scenario of the latest Compute()
   RunValues OfBaseline(const Scenario& scenario) const;
 
  private:

@@ -11,7 +11,7 @@ namespace fogline::study {
 
 /// Standard deviation of a real radar's range, m (data sheet of a Continental ARS408: 0.1 to 0.4).
 inline constexpr double kRealisticNoise_m = 0.25;
-/// Added to the names of cases with realistic noise.
+/// Text that is added to the names of cases with realistic noise.
 inline constexpr std::string_view kWithRealisticNoise = " with realistic noise";
 
 /// Overrides for a radar with this noise, and for a filter that knows this noise.

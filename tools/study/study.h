@@ -50,7 +50,8 @@ struct StudyFile {
 };
 
 /// Result of a study. It does not depend on the number of threads or the clock. On another machine
-/// it is the same if the machine's C library computes the same last bits.
+/// the result is the same if the mathematical functions of the machine's C library compute the same
+/// last bits.
 struct StudyResult {
   report::StudySection section;  // the section's claims are empty until they are checked
   std::vector<Claim> claims;

@@ -15,8 +15,8 @@ namespace {
 /// Limit of ISO 15622 for the jerk averaged over 1 s at speeds above 20 m/s. It also serves as the
 /// limit of comfort. The unit is m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
-/// The measure to which the limit belongs. It is not the jerk of single steps, because that jerk
-/// grows as the step shrinks.
+/// The measure that kComfortableJerk_mps3 limits. It is not the jerk of single steps, because that
+/// jerk grows as the step shrinks.
 constexpr std::string_view kTransferJerk = "max_handover_jerk_1s_mps3";
 /// A loss of safety that is too small to matter, in points of SI.
 constexpr double kTolerableLoss = 3;

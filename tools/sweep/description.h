@@ -25,7 +25,7 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// The path "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file belongs to a sweep: whether a readable description is beside the file.
+/// Whether a file belongs to a sweep. It does if there is a readable description beside the file.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.

@@ -16,7 +16,8 @@ namespace fogline::sweep {
 
 namespace {
 
-/// The rows that are computed at once. More rows would save little time, and need more memory.
+/// Largest number of rows that are computed at once. A larger number would save little time, and
+/// need more memory.
 constexpr std::int64_t kRowsAtOnce = 32;
 
 }  // namespace
@@ -45,7 +46,7 @@ void SweepWorker::ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_
   }
   const std::span all(scenarios_);
   std::vector<PairedRow> computed;
-  const std::size_t before = begin == 0 ? 1 : 0;  // runs before the first row
+  const std::size_t before = begin == 0 ? 1 : 0;  // number of runs before the run of the first row
   try {
     if (begin == 0) {
       scenarios_[0] = scenarios_[1];

@@ -17,8 +17,9 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Measures of this run and its paired run together. They are empty for a run that is its own
-  /// pair, or if the paired run has no compromised safety.
+  /// Measures of this run and its paired run together. They are all empty for a run that is its own
+  /// pair. A measure is also empty if no step counts for it, for example because the paired run has
+  /// no compromised safety in fog.
   metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
@@ -36,7 +37,7 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// Computes some rows of a unit at once.
+  /// Computes the rows of a unit from `begin` up to, but not including, `end`, at once.
   void ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end,
                    std::vector<SweepRow>& rows);
 
@@ -47,7 +48,7 @@ class SweepWorker {
   std::int64_t row_ = 0;  // the row that is computed, or cannot be computed
 };
 
-/// Takes the rows of a unit, in order of units. It returns false to stop.
+/// Called with the rows of each unit, in order of units; returns false to stop.
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. The consumer

@@ -61,8 +61,8 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   return ordered;
 }
 
-/// @throws InputError if the checksum of the row is not that of `line`, or if the row has no
-/// checksum although earlier rows have one
+/// Checks the line of a row with its checksum, if the shard has checksums. @throws InputError if
+/// the checksum differs, or if the row has no checksum although earlier rows have one
 void RequireSum(RowChecker& checker, const std::string& line, const std::filesystem::path& shard,
                 std::int64_t row) {
   if (!checker.has_sums()) return;
@@ -75,8 +75,8 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
                       : "the row has no checksum; run its sweep again to compute the row again"));
 }
 
-/// Copies the rows of a shard, and also the header if the shard is the first one. @return false if
-/// the shard has rows but no checksums
+/// Copies the rows of a shard, and also the header if the shard is the first one.
+/// @return true if the shard has checksums, or has no rows
 bool Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);

@@ -16,8 +16,8 @@ struct Merged {
 /// Merges the complete files of all shards, given in any order. The merged file is written whole or
 /// not at all.
 /// @throws InputError if a shard is missing, is given twice, is incomplete or belongs to another
-/// sweep; if `merged` exists and `force` is false; if `merged` exists and is not a sweep; as
-/// RefuseForeignSideFiles(). std::runtime_error when the disk is full; Interrupted
+/// sweep; if `merged` exists and `force` is false; if `merged` exists and is not a sweep; or as
+/// RefuseForeignSideFiles() does. std::runtime_error when the disk is full; Interrupted
 Merged MergeShards(const std::vector<std::filesystem::path>& shards,
                    const std::filesystem::path& merged, bool force);
 

@@ -7,7 +7,8 @@ class PairedRuns::Accumulators {
  public:
   explicit Accumulators(const Scenario& scenario) : measures_(scenario), pair_(scenario) {}
 
-  /// Adds the next step. `baseline` has this step if the run without traded control has it.
+  /// Adds the next step of the run. `baseline` has the steps of the run without traded control,
+  /// which may end earlier.
   void Add(const metrics::Sample& sample, std::span<const metrics::Sample> baseline) {
     measures_.Add(sample);
     if (steps_ < baseline.size()) pair_.Add(baseline[steps_++], sample);

@@ -17,9 +17,10 @@ namespace fogline::sweep {
 /// Measures of a run and of its pair.
 struct PairedRow {
   metrics::RunMetrics measures;
-  /// Measures of the run and the run without traded control together. If one of both ends early,
-  /// these measures use only the steps that both have. They are empty if the run without traded
-  /// control has no compromised safety.
+  /// Measures of the run and the run without traded control together. If one of the two runs ends
+  /// early, these measures use only the steps that both runs have. A measure is empty if no step
+  /// counts for it, for example because the run without traded control has no compromised safety in
+  /// fog.
   metrics::PairedMetrics paired;
 };
 
@@ -30,14 +31,15 @@ class PairedRuns {
  public:
   /// Computes the run of the first scenario, which has no traded control, and the runs of the other
   /// scenarios. @return the rows of the other scenarios
-  /// @throws as SharedRuns::Run(); current() is then the position of the scenario
+  /// @throws as SharedRuns::Run(); current() is then the position of the scenario whose run has
+  /// thrown
   std::vector<PairedRow> Run(std::span<const Scenario> scenarios);
-  /// Computes more runs that are paired with the first run of the last Run().
+  /// Computes more runs. They are paired with the first run of the latest call of Run().
   std::vector<PairedRow> RunMore(std::span<const Scenario> scenarios);
 
   /// The samples of the run without traded control.
   const std::vector<metrics::Sample>& baseline() const { return baseline_; }
-  /// The effect of the fog in this run.
+  /// The effect of the fog in the run without traded control.
   const metrics::FogEffect& effect() const { return effect_; }
   std::size_t current() const { return runs_.current(); }
 

@@ -50,7 +50,8 @@ std::optional<SeedRange> SeedsOf(std::string_view text) {
   return fits ? std::optional(seeds) : std::nullopt;
 }
 
-/// The end of the error about seeds that are written "A..B" or "A-B"; "" for other texts.
+/// A hint for the error message about seeds that are written "A..B" or "A-B", such as "; did you
+/// mean 1:20?"; "" for other texts.
 std::string SeedsHint(const std::string& text) {
   for (const std::string_view separator : {"..", "-"}) {
     const std::size_t at = text.find(separator);
@@ -204,8 +205,9 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   if (left == 0) {
     throw InputError(fmt::format("error: --seeds and --grid give more than {} rows", kMaxRows));
   }
-  // stride_ is the number of rows between two values of an axis, among the axes of its kind
-  // (arbitrator or other). The last axis of a kind varies fastest.
+  // stride_ is the distance in rows between two neighbouring values of an axis. Only the axes of
+  // the same kind (of the arbitrator, or other axes) count for this distance. The last axis of a
+  // kind varies fastest.
   stride_.resize(axes_.size());
   for (std::size_t i = axes_.size(); i-- > 0;) {
     std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;

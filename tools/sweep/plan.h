@@ -11,7 +11,7 @@
 
 namespace fogline::sweep {
 
-/// One field and its values, as written in a scenario file.
+/// One field, and the values that the sweep gives it. Values are written as in a scenario file.
 struct Axis {
   std::string pointer;
   std::vector<std::string> values;
@@ -40,7 +40,7 @@ struct SeedRange {
   std::int64_t last = 1;
   std::int64_t count() const { return last - first + 1; }
 };
-/// @throws InputError
+/// Reads seeds "A:B" or "A". @throws InputError
 SeedRange ParseSeeds(const std::string& text);
 
 /// Part `index` of a sweep that is divided into `count` parts; `index` counts from 1. The parts
@@ -98,7 +98,7 @@ class SweepPlan {
   SeedRange seeds_;
   std::vector<FieldAssignment> fields_;  // one for each axis
   std::vector<bool> inner_;              // for each axis: whether it belongs to the arbitrator
-  std::vector<std::int64_t> stride_;     // stride of each axis among the axes of the same kind
+  std::vector<std::int64_t> stride_;     // for each axis; see the constructor
   std::int64_t outer_points_ = 1;
   std::int64_t inner_points_ = 1;
 };

@@ -227,8 +227,8 @@ void SweepFile::RequireInPlace() const {
 }
 
 void SweepFile::Write(std::string_view text, const Handle& file) const {
-  // A write to a file does not block. A write to a pipe may block forever, so an interrupt ends
-  // this write.
+  // A write to a file does not block. A write to a pipe may block forever, so an interrupt ends a
+  // write to a pipe.
   const int error = WriteAll(file.fd, text, sums_.fd < 0 ? WasInterrupted : nullptr);
   if (error == 0) return;
   if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));

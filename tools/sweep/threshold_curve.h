@@ -56,7 +56,8 @@ struct ThresholdRow {
   std::int64_t collisions = 0;  // runs with a collision
 };
 
-/// Refuses a scenario whose policy does not use the threshold, because all its rows would be equal.
+/// Refuses a scenario whose policy does not use the threshold, because all rows of its table would
+/// be equal.
 /// @param file source of the scenario, for messages
 /// @throws InputError that names the policies which use the threshold
 void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file);

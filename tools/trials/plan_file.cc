@@ -26,7 +26,7 @@ namespace fogline::trials {
 namespace {
 
 constexpr std::string_view kAllowed = "fogline experiment check --schema";
-// Largest length of a name. Names become parts of file names and of columns. The value is our
+// Largest length of a name. Names become parts of the names of files and columns. The value is our
 // choice; file systems allow 255 bytes. Each character of a name is one byte.
 constexpr std::size_t kMostNameCharacters = 40;
 static_assert(kMostNameCharacters <= runtime::kMostTrialNameBytes);
@@ -55,8 +55,8 @@ class PlanCheck {
     mistakes_.Add(FindPlace(root_, pointer), pointer, rule, std::move(message));
   }
 
-  /// Checks the length of a text that each fact of a trial, or each answer, has (trial_t). Names
-  /// have a smaller limit.
+  /// Checks the length of a text that is a part of each fact of a trial, or of each answer
+  /// (trial_t). Names have a smaller limit.
   void CheckFitsLog(const std::string& pointer, const std::string& text) {
     if (text.size() <= runtime::kMostTrialNameBytes) return;
     Add(pointer, "text",
@@ -134,7 +134,7 @@ class PlanCheck {
     }
     const double steps = (item.max - item.min) / item.step;
     constexpr double kMostSteps = 1000;  // our choice: a screen cannot show more steps separately
-    constexpr double kRounding = 1e-9;   // of a step, because 0.1 is not exact in binary
+    constexpr double kRounding = 1e-9;   // share of kMostSteps, because 0.1 is not exact in binary
     if (steps > kMostSteps || std::abs(steps - std::round(steps)) > kRounding * kMostSteps) {
       Add(at + "/step", "range",
           fmt::format("{} does not divide the scale from {} to {} into 1 to {} equal steps",
@@ -147,7 +147,8 @@ class PlanCheck {
   DiagnosticList& mistakes_;
 };
 
-/// The scenario of a condition, with its changes and `more` changes. @throws ScenarioError
+/// The scenario of a condition, with the changes of the condition and then the changes in `more`.
+/// @throws ScenarioError
 Scenario LoadChanged(const PlanFile& file, const ConditionSection& condition,
                      const std::vector<std::string>& more) {
   std::vector<std::string> overrides = condition.set;
@@ -202,8 +203,8 @@ class ScenarioCheck {
         is_change ? fmt::format("{}/set/{}", condition, mistake.override_number - 1)
                   : condition + "/scenario";
     what += mistake.message;
-    // Whether a run is impossible depends on the changes, too. A mistake of the file does not
-    // depend on them.
+    // A mistake in the scenario file itself does not depend on the changes of a condition, so it is
+    // reported only once. Whether a run is impossible depends on these changes, too.
     const bool is_of_file = !is_change && mistake.rule != "impossible";
     if (is_of_file && !in_files_.insert(what).second) return;
     Keep(pointer, mistake.rule, std::move(what),

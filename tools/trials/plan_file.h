@@ -26,7 +26,7 @@ struct PlanFile {
 
 /// Reads an experiment, and checks that the scenario of each condition can be run.
 /// @throws ScenarioError with every mistake of the file; if it has none, with every mistake of its
-///     scenarios. A mistake in a scenario's file is at the first condition with this file
+///     scenarios. A mistake in a scenario's file is reported at the first condition with this file
 PlanFile LoadPlan(const std::filesystem::path& file);
 
 /// Says why trials with this scenario cannot be made at this speed. "" if they can.

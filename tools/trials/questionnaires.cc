@@ -32,7 +32,7 @@ ItemSection TlxScale(std::string name, std::string text, std::string low = "very
 }
 
 bool IsOnScale(const ItemSection& item, double value) {
-  constexpr double kRounding = 1e-6;  // of a step, because 0.1 is not exact in binary
+  constexpr double kRounding = 1e-6;  // share of a step, because 0.1 is not exact in binary
   const double steps = (value - item.min) / item.step;
   return value >= item.min && value <= item.max && std::abs(steps - std::round(steps)) < kRounding;
 }

@@ -12,7 +12,8 @@ namespace fogline::trials {
 /// The questionnaire with its questions: those of its file, or those of a standard. The questions
 /// of a standard are short labels of Fogline, and not the published wording:
 /// - nasa_tlx: the six scales of the NASA Task Load Index (Hart & Staveland 1988), from 0 to 100 in
-///   steps of 5. Without the weights of the original it is called Raw TLX (Hart 2006).
+///   steps of 5. Fogline leaves out the weights of the original. This form is called Raw TLX (Hart
+///   2006).
 /// - kss: the Karolinska Sleepiness Scale (Akerstedt & Gillberg 1990), from 1 to 9.
 QuestionnaireSection WithItems(QuestionnaireSection questionnaire);
 

@@ -42,14 +42,15 @@ bool HasOtherFiles(const std::filesystem::path& folder) {
 }
 
 /// Whether a log without facts has a run that this trial could have made: in real time, of the
-/// trial's scenario. A crash after a run can leave such a log if the network has lost all facts.
+/// trial's scenario. A log without facts remains if a crash comes after a run, and the network has
+/// lost all facts of the run.
 bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
   if (!story.scenario || story.speed <= 0) return false;
   std::vector<std::string> seed;
   if (trial.seed >= 0) seed.push_back(fmt::format("/seed={}", trial.seed));
   try {
     Scenario expected = LoadCondition(plan, ConditionOf(plan.plan, trial), seed);
-    if (story.scenario->person.drives) expected.person.drives = true;  // as --keys sets it
+    if (story.scenario->person.drives) expected.person.drives = true;  // because --keys sets this
     expected.lead.sumo.version = story.scenario->lead.sumo.version;
     return PrintScenario(expected) == PrintScenario(*story.scenario);
   } catch (const InputError&) {

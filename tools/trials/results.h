@@ -41,7 +41,8 @@ class Results {
 
   /// Creates the folder, and copies the experiment's file into it. @throws InputError
   void Create() const;
-  /// Creates the folder of a participant, too, and locks it for a session. @throws InputError
+  /// Does the same as Create(). Then creates the folder of a participant, and locks it for a
+  /// session. @throws InputError
   std::unique_ptr<FileLock> Begin(std::int64_t participant) const;
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -50,8 +51,8 @@ class Results {
   std::filesystem::path LogOf(const Trial& trial, std::int64_t attempt) const;
 
   /// The newest run of a trial. If the newest log has no step, its run never began. Then this log
-  /// does not count, and the next run gets its name. A log of another trial, or of another
-  /// version of the experiment, counts as the log of a broken run.
+  /// does not count, and the log of the next run gets the same name. A log of another trial, or of
+  /// another version of the experiment, counts as the log of a broken run.
   TrialRecord Read(const Trial& trial) const;
   /// All practice runs and trials of a participant, in their order.
   std::vector<TrialRecord> ReadAll(std::int64_t participant) const;

@@ -22,7 +22,7 @@ struct SessionOptions {
   double speed = 1;                    // simulated seconds per second
   std::vector<std::string> overrides;  // of every trial, such as /person/drives=true
   bool breaks = true;                  // false: breaks have no least duration
-  /// Makes the pedals of the person who drives; called for each run. Empty: this program has no
+  /// Makes the pedals of the person who drives; called for each run. Empty if this program has no
   /// seat.
   std::function<std::unique_ptr<drive::PedalSource>(const PersonSection&)> pedals;
   runner::RunOptions run;  // transport and traffic of each run

@@ -62,7 +62,7 @@ Value MetricValue(std::string name, std::string value, std::string_view unit) {
           .time_s = ""};
 }
 
-/// The number of requests to take over, and the measures of the first one.
+/// Adds the number of requests to take over, and the measures of the first request.
 void AddFirstRequest(const runner::LoggedRun& run, std::vector<Value>& values) {
   const auto& requests = run.result.take_overs;
   const bool are_known = run.scenario.arbitrator.take_over.mode != TakeOverMode::kRequested ||
@@ -81,7 +81,7 @@ void AddFirstRequest(const runner::LoggedRun& run, std::vector<Value>& values) {
                  std::string_view) { add(name, NumberCell(value), unit); });
 }
 
-/// The latency of the inputs of a person who drove.
+/// Adds the latency of the inputs of a person who drove.
 void AddInputLatency(const std::optional<log::InputLatency>& latency, std::vector<Value>& values) {
   log::VisitLatency(
       latency.value_or(log::InputLatency{}),

@@ -19,7 +19,7 @@ struct Tables {
   std::string values;
   std::int64_t rows = 0;            // of `trials`
   std::int64_t missing = 0;         // trials that are not done, practice runs included
-  std::vector<std::string> faults;  // of the logs of broken runs, as "LOG: fault"
+  std::vector<std::string> faults;  // one for the log of each broken run, as "LOG: fault"
 };
 
 /// Reads the newest log of each trial. Cells without a value are empty. Texts are quoted as in RFC

@@ -41,7 +41,8 @@ struct TrialStory {
 /// Reads a log. A log that cannot be read counts as the log of a broken run, and the note says why.
 TrialStory ReadStory(const std::filesystem::path& log);
 
-/// The path and the fault of a log, such as "trial-1-fog.lcm: the log ends after step 4".
+/// A text with the path and the fault of a log, such as "trial-1-fog.lcm: the log ends after step
+/// 4".
 std::string FaultText(const std::filesystem::path& log, const TrialStory& story);
 
 /// @throws std::runtime_error if a text of the fact is too long, or a number is out of range:

@@ -6,8 +6,8 @@
 namespace fogline::watch {
 namespace {
 
-// The largest number of lines, because most of the window is for the traffic. A machine rarely has
-// more runs than this limit. Further announcements may be forged.
+// The largest number of runs that are listed. The number is small, because most of the window is
+// for the traffic. A machine rarely has more runs. Further announcements may be forged.
 constexpr std::size_t kMaxLines = 8;
 
 }  // namespace

@@ -12,11 +12,11 @@ namespace fogline::watch {
 /// Statistics of arrivals at the end of an interval of observation. A gap is the time between two
 /// successive arrivals.
 struct ArrivalView {
-  std::int64_t messages = 0;            // number since the first message
+  std::int64_t messages = 0;            // number of all messages so far
   double rate_hz = 0;                   // messages of the interval / its length
   double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
   std::optional<double> jitter_s;       // of the gaps that end in the interval; needs two gaps
-  std::optional<double> longest_gap_s;  // the longest of these gaps; nullopt without a gap
+  std::optional<double> longest_gap_s;  // longest gap that ends in the interval; nullopt if none
   double age_s = 0;                     // time since the last message
 };
 

@@ -12,9 +12,10 @@ namespace {
 // Interval at which the program checks whether another run should be followed. A shorter interval
 // would cost too much time, because opening a network takes time.
 constexpr Duration kFollowEvery = milliseconds(100);
-// After this many unknown names a network is closed and opened again.
+// After this many unknown channel names, the network of the URL is closed and opened again, because
+// LCM's library stores every name.
 constexpr std::int64_t kMostNames = 10'000;
-// Number of announced runs with unreachable networks that are remembered.
+// The program remembers at most this many announced runs whose networks are unreachable.
 constexpr std::size_t kMaxUnreachable = 64;
 
 }  // namespace
@@ -63,8 +64,9 @@ std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
 void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   if (unknown - names_ < kMostNames) return;
   names_ = unknown;
-  // Only this network can collect names: a followed network has no LCM that receives, because runs
-  // on such networks are not announced (runtime::MayBeAnnounced()).
+  // Only the network of the URL can collect names. On the network of a followed run, LCM's library
+  // does not receive: runs on networks where it receives are not announced
+  // (runtime::MayBeAnnounced()).
   if (network_->bus.LcmReceives()) Open();
 }
 

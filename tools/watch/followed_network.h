@@ -19,14 +19,15 @@
 
 namespace fogline::watch {
 
-/// Which announced run a program follows. `kFirstRun` is the run that was the newest when a run was
-/// followed first. The program stays with this run, also after the end of the run.
+/// Which announced run a program follows. `kNewestRun`: always the newest run. `kFirstRun`: the run
+/// that was the newest when the program first found a run; the program stays with this run, also
+/// after the end of the run.
 enum class Following { kNothing, kNewestRun, kFirstRun };
 
 class FollowedNetwork {
  public:
-  /// Longest time between two calls of Handle(). After very many messages, poll() may not report
-  /// the messages that still wait.
+  /// The caller must call Handle() at least this often, because after very many messages poll() may
+  /// not report the messages that still wait.
   static constexpr Duration kLookEvery = milliseconds(50);
 
   /// @param watcher gets every message, except LCM's own and beacons
@@ -37,8 +38,9 @@ class FollowedNetwork {
   /// @throws std::runtime_error if the network of the URL is lost
   void Handle(TimePoint now);
 
-  /// Closes the network of the URL and opens it again, if LCM receives there (Bus::LcmReceives())
-  /// and has too many names. The watcher misses messages for some milliseconds.
+  /// Closes the network of the URL and opens it again, if LCM's library receives its messages
+  /// (Bus::LcmReceives()) and has stored too many channel names. Meanwhile, for some milliseconds,
+  /// the watcher misses messages.
   /// @param unknown messages so far on channels whose names were unknown
   void ForgetNames(std::int64_t unknown);
 
@@ -48,7 +50,7 @@ class FollowedNetwork {
     return {network_->bus.fd(), followed_ && !followed_->lost ? followed_->bus.fd() : -1};
   }
   /// A number that changes when a network is opened or closed, or when its relay is lost or comes
-  /// back. A descriptor may then have the same number, but be another file.
+  /// back. A descriptor may then have the same number, but belong to another file.
   std::int64_t generation() const { return generation_; }
 
   /// The URL of the followed run's network; without a followed run, the given URL.
@@ -57,7 +59,8 @@ class FollowedNetwork {
   std::vector<runtime::WaitingRole> waiting(TimePoint now) const { return waiting_.Current(now); }
   bool follows() const { return listener_.has_value(); }
   bool followed() const { return followed_.has_value(); }
-  /// The announced runs. The followed run comes first; `kFirstRun` is here also after its end.
+  /// The announced runs. The followed run comes first. With `kFirstRun`, the list contains the
+  /// followed run also after its end.
   const std::vector<runtime::Announcement>& runs() const { return runs_; }
 
   /// The senders, and how many messages of each sender were lost.
@@ -70,7 +73,7 @@ class FollowedNetwork {
  private:
   struct Network {
     Network(const std::string& url, const runtime::Bus::Watcher& watcher);
-    /// @return whether a descriptor may be another file
+    /// @return whether a descriptor may now belong to another file
     bool Drain(TimePoint now);
 
     runtime::Bus bus;

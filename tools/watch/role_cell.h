@@ -11,8 +11,8 @@
 
 namespace fogline {
 
-/// The name of a role, or a heading, with spaces behind it. The cells of all roles of this build
-/// have the same width.
+/// The name of a role, or a heading, with spaces behind it. The cells have the same width for all
+/// roles of this build.
 inline std::string RoleCell(std::string_view text) {
   constexpr std::size_t kWidth = 1 + std::ranges::max(kRoles, {}, [](const RoleInfo& info) {
                                        return info.name.size();

@@ -46,7 +46,7 @@ Terminal::Terminal() {
     has_keys_ = true;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // after a stop by Ctrl-Z the shell would have no echo
+    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // no Ctrl-Z: after it, the shell would have no echo
     tcsetattr(fd_, TCSANOW, &keys);
   }
   Write(kEnter);

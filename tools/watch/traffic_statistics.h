@@ -21,7 +21,8 @@
 namespace fogline::watch {
 
 /// The number of messages that could not be decoded, by the type that their fingerprint names, or
-/// by "unknown". If the fingerprint names a type, the channel or the size of the message is wrong.
+/// by "unknown". If the fingerprint names a type, the message came on a channel of another type, or
+/// its size is wrong.
 using Undecodable = std::map<std::string, std::int64_t>;
 
 struct ChannelView {
@@ -30,7 +31,7 @@ struct ChannelView {
   ArrivalView arrivals;
   std::optional<StepSequence::Counts> steps;  // only for channels with a message in every step
   Undecodable undecodable;
-  std::vector<std::uint8_t> newest;  // the last message that could be decoded, or belongs to no run
+  std::vector<std::uint8_t> newest;  // the last message; in a run, the last one that was decoded
 
   std::int64_t NumUndecodable() const;
 };
@@ -82,9 +83,11 @@ class TrafficStatistics {
   /// Number of messages on channels whose names were unknown or forgotten.
   std::int64_t unknown_names() const { return unknown_names_; }
 
-  /// A role that has sent no STATUS for this long is silent. This is the time of five heartbeats.
+  /// A role that has sent no STATUS for this long is silent. In this time a role sends five
+  /// heartbeats.
   static constexpr Duration kSilent = milliseconds(1000);
-  /// A replaced instance of a role is forgotten after this time without a STATUS.
+  /// If a newer instance has replaced an instance of a role, the old instance is forgotten after
+  /// this time without a STATUS.
   static constexpr Duration kFollowed = milliseconds(10'000);
   static constexpr std::size_t kMaxRuns = 8;
   static constexpr std::size_t kMaxOthers = 64;

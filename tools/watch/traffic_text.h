@@ -22,7 +22,7 @@ struct Line {
 /// signs and spaces is printed as '?'. So no sender can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
-/// The first of these lines: the network, and its traffic in the last interval.
+/// The first line of TrafficLines(): the network, and its traffic in the last interval.
 Line SummaryLine(const TrafficView& view, std::string_view url);
 
 nlohmann::ordered_json TrafficJson(const TrafficView& view, std::string_view url);

@@ -23,8 +23,8 @@ bool IsSet(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Turns the child's child into the program that opens the browser. Makes only async-signal-safe
-/// calls.
+/// Replaces this process by the program that opens the browser. This process is a child of the
+/// child of fogline-web. This function makes only async-signal-safe calls.
 [[noreturn]] void Become(const char* program, char* const* arguments) {
   setsid();  // Ctrl-C in the terminal does not reach the browser
   sigset_t none;

@@ -25,15 +25,16 @@ struct KnownChannel {
 /// Other channels get the next numbers in the order of their first messages.
 class ChannelTable {
  public:
-  /// Limit for the other channels, because any program on the network can invent names.
+  /// Limit for the channels outside the graph. It is needed because any program on the network can
+  /// invent names.
   static constexpr std::size_t kMostOthers = 4096;
 
   /// Returns the number of a channel. Adds the channel if it is new.
   /// @param bytes a message of the channel; its first bytes name its type
-  /// @return nullopt if there are too many channels
+  /// @return nullopt if the channel is new and there are too many channels
   std::optional<ChannelId> IdOf(std::string_view name, runtime::Bytes bytes);
 
-  /// The other channels, in the order of their numbers.
+  /// The channels outside the graph, in the order of their numbers.
   const std::vector<KnownChannel>& others() const { return others_; }
 
  private:

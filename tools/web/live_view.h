@@ -48,8 +48,8 @@ class LiveView final : public View {
   /// Sets the server whose counts (viewers, cut off, refused) the clients get in `health`. The
   /// server must exist until Stop().
   void Show(const Server& server) { server_ = &server; }
-  /// Passes each message on a channel of the graph also to `teller`, after tracker() has handled
-  /// it. An empty function ends this.
+  /// From now on, passes each message on a channel of the graph to `teller`, too, after tracker()
+  /// has handled the message. An empty `teller` ends this.
   using Teller = std::function<void(const RingMessage& message)>;
   void TellMessages(Teller teller) { teller_ = std::move(teller); }
   /// Ends the work of this view in the context.
@@ -72,8 +72,8 @@ class LiveView final : public View {
     std::int64_t sent = 0;                      // number of history messages sent so far
     std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
   };
-  /// Number of statistics, each over one second. One of them ends every 250 ms, so every health
-  /// message has the numbers of a whole second.
+  /// Number of statistics. Each of them covers one second, and one of them ends every 250 ms. So
+  /// every health message has the numbers of a whole second.
   static constexpr std::size_t kTurns = 4;
 
   void Hear(std::string_view channel, runtime::Bytes bytes);
@@ -100,7 +100,7 @@ class LiveView final : public View {
   std::size_t turn_ = 0;
   ChannelTable channels_;
   foxglove::Channels foxglove_channels_;
-  std::size_t told_channels_ = 0;  // number of other channels that the clients know
+  std::size_t told_channels_ = 0;  // number of channels_.others() that the clients know
   MessageRing ring_;
   RunTracker tracker_;
   const bool waits_for_person_;
@@ -111,7 +111,7 @@ class LiveView final : public View {
   LineBudget lines_{"fogline-web"};
   std::int64_t unverified_ = 0;
   watch::FollowedNetwork network_;
-  std::int64_t generation_ = -1;  // network_.generation() of descriptors_
+  std::int64_t generation_ = -1;  // network_.generation() when descriptors_ were made
   std::array<std::optional<boost::asio::posix::stream_descriptor>, 2> descriptors_;
   boost::asio::steady_timer look_;
   boost::asio::steady_timer health_;

@@ -1,5 +1,5 @@
-// The newest messages of a network, for clients that connect late and for clients of different
-// speed.
+// The newest messages of a network, for clients that connect late, and for clients that read at
+// different speeds.
 #pragma once
 
 #include <cstddef>

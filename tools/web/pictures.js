@@ -9,7 +9,7 @@ import {begin, drives, startDrive} from "../../tests/campaign/web/seat.js";
 import {background, browser, goTo, open, root, scratch, until, view} from "../../tests/campaign/web/window.js";
 
 const {FOGLINE} = process.env;
-const MOST_BYTES = 250000;  // limit for a picture, so that a clone stays small
+const MOST_BYTES = 250000;  // limit for a picture, so that a clone of the repository stays small
 const WIDTH = 1280;         // of a picture; GitHub shows it in about 850 pixels
 // Number of colours of a picture. More would need three times the bytes for no visible gain.
 const COLOURS = 256;

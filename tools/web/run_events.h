@@ -1,6 +1,6 @@
 // The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
-// emergency braking, collisions. A live run and its log give the same events. Only the text of an
-// event after missing messages may name other steps.
+// emergency braking, collisions. A live run and its log give the same events. If messages are
+// missing, only the steps that the text of an event names may differ.
 #pragma once
 
 #include <cstddef>
@@ -32,12 +32,13 @@ struct RunEvent {
 /// text of the event names the steps in which the event may have happened.
 class RunEvents {
  public:
-  /// Limit for the stored events. A DoC that moves around its threshold causes many alarms.
+  /// Limit for the stored events. A Degree of Conflict (DoC) that moves around its threshold causes
+  /// many alarms.
   static constexpr std::size_t kMost = 5000;
 
   /// Sets whether a step may have no command although no message is lost, as in real time. If so,
-  /// an event in a command happened in the step of this command. Applies to commands that are added
-  /// afterwards.
+  /// an event in a command happened in the step of this command. The setting applies to commands
+  /// that are added afterwards.
   void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
   /// Sets the section of the run's scenario that says whether a person drives. The texts of earlier
   /// events change, too, because a viewer may get the scenario after the first steps.
@@ -52,7 +53,8 @@ class RunEvents {
   const take_over::TakeOverLog& take_over() const { return take_over_; }
 
  private:
-  /// An event of the take-over log, whose text depends on the person.
+  /// An event of the take-over log. Its text depends on the section of the scenario about the
+  /// person.
   struct Change {
     std::size_t place;  // of the event in events_
     take_over::TakeOverEntry entry;

@@ -28,7 +28,7 @@ class RunTracker {
   /// @param only the only run to follow; nullopt: any run
   explicit RunTracker(std::optional<std::int64_t> only) : run_id_(only), only_(only) {}
 
-  /// Takes a message. @param channel place of the channel in kChannels
+  /// Takes a message. @param channel index of the channel in kChannels
   void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
 
   /// The followed run; nullopt before the first run.
@@ -72,7 +72,7 @@ class RunTracker {
   std::string shown_text_;
   std::int64_t runs_ = 0;
   std::int64_t refused_scenarios_ = 0;
-  PersonSection person_;  // of the followed run, when its scenario has come and is valid
+  PersonSection person_;  // of the followed run; defaults before its valid scenario has come
   RunEvents events_;
   std::size_t taken_ = 0;     // number of events that TakeEvents() has returned
   std::int64_t newest_ = -1;  // newest step

@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A JSON document as text. A name from the network may have bytes that are not valid UTF-8.
+/// A JSON document as text. Bytes that are not valid UTF-8 are replaced, because a name from the
+/// network may have such bytes.
 std::string Printed(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -38,7 +38,7 @@ struct HistoryRequest {
   RequestId id = 0;
 };
 
-/// A frame that is not a request, with the reason for its sender.
+/// A frame that is not a valid request. The sender of the frame gets the reason.
 struct BadRequest {
   std::optional<RequestId> id;
   std::string why;

@@ -240,8 +240,8 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
   context.run_for(kEndLimit);
 }
 
-/// The key of a live view. A log needs no key, so it does not matter there that the variable is
-/// set.
+/// The key of a live view, from --key or from the variable kKeyVariable. This function is not
+/// called for a log, because a log needs no key. So the variable may also be set if a log is shown.
 /// @throws InputError
 std::optional<runtime::SigningKey> KeyOf(const ViewArguments& arguments) {
   runtime::TrafficOptions traffic = arguments.traffic;
@@ -250,8 +250,8 @@ std::optional<runtime::SigningKey> KeyOf(const ViewArguments& arguments) {
   return runtime::KeyOf(traffic);
 }
 
-/// Checks that this build has a page for a browser. Prints only a warning for a missing page if the
-/// user wants no browser.
+/// Checks that this build has a page for a browser. If the page is missing, but the user wants no
+/// browser, this function only prints a warning.
 /// @throws std::runtime_error if the page is missing and the user wants a browser
 void RequirePage(const ViewArguments& arguments) {
   const std::string why(WhyNoPage());

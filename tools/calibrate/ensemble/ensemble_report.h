@@ -37,7 +37,7 @@ std::string EnsembleSummary(const EnsembleReport& report);
 /// tables, and a column for each set.
 std::string EnsembleText(const EnsembleReport& report);
 
-/// The same table as CSV.
+/// The table of EnsembleText() as CSV.
 std::string EnsembleCsv(const EnsembleReport& report);
 
 std::string EnsembleJson(const EnsembleReport& report);

@@ -16,9 +16,9 @@ namespace {
 // to 1999 belong to studies.
 constexpr Stream kStarts{2000};
 
-// A search ends at this share of the largest allowed distance (EnsembleRules::within). The other
-// half of this distance is a margin, because the distance over the fresh seeds is a little
-// different.
+// A search ends when the distance of its best point from the target is at most this share of the
+// largest allowed distance (EnsembleRules::within). The other half of the allowed distance is a
+// margin, because the distance over the fresh seeds is a little different.
 constexpr double kEnough = 0.5;
 
 double Squared(double x) { return x * x; }

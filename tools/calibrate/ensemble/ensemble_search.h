@@ -15,8 +15,8 @@ namespace fogline::calibrate {
 /// Input of a search. A point gives each field as a share of the field's range, in [0, 1].
 struct Landscape {
   std::size_t fields = 0;
-  /// Squared distance of a point's table from the target: over the seeds of the search, and over
-  /// fresh seeds. The result nullopt stops the search.
+  /// Squared distance of a point's table from the target: `searched` over the seeds of the search,
+  /// `fresh` over fresh seeds. If one of them returns nullopt, the search stops.
   FunctionOfShares searched;
   FunctionOfShares fresh;
   /// Returns the point with the rounded values that a file contains. Each function has the same
@@ -48,8 +48,8 @@ struct EnsembleCounts {
   int rejected = 0;     // points that did not meet the target on fresh seeds
 };
 
-/// Distinct points that meet the target over both kinds of seeds, in the order in which they were
-/// found.
+/// Distinct points that meet the target over the seeds of the search and over fresh seeds, in the
+/// order in which they were found.
 struct PointEnsemble {
   std::vector<std::vector<double>> points;
   EnsembleCounts counts;

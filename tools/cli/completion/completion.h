@@ -23,7 +23,7 @@ struct Suggestion {
 
 struct Completion {
   std::vector<Suggestion> words;
-  std::string files;  // pattern of files that may also stand there, such as "*.json"; "": no files
+  std::string files;  // pattern of the suggested files, such as "*.json"; "": no files
 };
 
 /// The words and files that may replace the word at the cursor.

@@ -15,7 +15,8 @@
 namespace fogline::cli {
 namespace {
 
-/// The kind of an option's value, if the option's check does not show the kind.
+/// The kind of the values of an option or argument. kKinds names the options and arguments whose
+/// check does not show the kind.
 enum class Kind {
   kAssignment,  // a field of the scenario and its value, /fog/bias_m=0.3
   kPointer,     // a field or section of the scenario

@@ -102,7 +102,7 @@ std::string UnknownTakeOvers(const runner::LoggedRun& run) {
 }
 
 void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair) {
-  if (run.steps == 0 && !run.gaps.Any()) return;  // SayAboutLog() says it
+  if (run.steps == 0 && !run.gaps.Any()) return;  // SayAboutLog() says that no step is complete
   const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
   std::string unknown = UnknownMeasuresText(run.result);
   for (const std::string& other : {of_pair, UnknownTakeOvers(run)}) {

@@ -47,7 +47,8 @@ nlohmann::ordered_json DigestJson(const log::RunLog& run);
 
 /// The names of the measures of a run that are unknown because its log has gaps.
 std::vector<std::string> UnknownMeasures(const runner::RunResult& result);
-/// The same as text, such as "rhe_pct, transfers", or "all measures"; "" if all are known.
+/// These names as a text, such as "rhe_pct, transfers", or "all measures"; "" if all measures are
+/// known.
 std::string UnknownMeasuresText(const runner::RunResult& result);
 
 /// Names the unknown requests to take over of a run, and the unknown measures of requests, such as
@@ -56,7 +57,7 @@ std::string UnknownMeasuresText(const runner::RunResult& result);
 std::string UnknownTakeOvers(const runner::LoggedRun& run);
 
 /// Prints on stderr which results of a run are unknown because its log has gaps.
-/// @param of_pair names of unknown results that need the paired run
+/// @param of_pair names of the unknown results that need the paired run (pairing.h)
 void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair = "");
 
 }  // namespace fogline::cli

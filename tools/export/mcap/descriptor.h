@@ -31,7 +31,8 @@ enum class FieldType : std::uint8_t {
   kUint32 = 13,
 };
 
-/// Whether a member is one value of type `bytes`.
+/// Whether a member is an array of LCM's type `byte`. Such a member becomes one value of the type
+/// `bytes`.
 bool IsBytes(const web::LcmMember& member);
 FieldType FieldTypeOf(const web::LcmMember& member);
 

@@ -33,8 +33,8 @@ constexpr std::string_view kLibrary = "fogline";
 constexpr std::string_view kEncoding = "protobuf";
 constexpr std::int64_t kNanosPerMicro = 1000;
 
-// In this file a channel is an index in kChannels, or kWallClock. The channel of the wall clock of
-// the steps is not in the graph.
+// In this file a channel is an index in kChannels, or kWallClock. kWallClock is the channel of the
+// wall clock of the steps. It is not in kChannels.
 constexpr std::size_t kWallClock = kNumChannels;
 constexpr std::size_t kNone = kNumChannels + 1;
 
@@ -53,7 +53,7 @@ std::string_view NameOfChannel(std::size_t channel) {
   return channel == kWallClock ? log::kWallClockChannel : kChannels[channel].name;
 }
 
-/// The channel of an event that does not belong to a step; kNone for any other event.
+/// The channel of an event that does not belong to a step; kNone for RUN and for any other event.
 std::size_t ChannelBesideSteps(const log::Event& event) {
   if (event.channel == log::kWallClockChannel) return kWallClock;
   const std::size_t channel = ChannelNamed(event.channel);
@@ -102,8 +102,8 @@ class Exporter {
     }
   }
 
-  /// Adds the messages of this run that belong to no step, up to the first one that was logged
-  /// after `utime`. nullopt: all of them.
+  /// Adds the messages of this run that belong to no step, up to, but not including, the first
+  /// event that was logged after `utime`. If `utime` is nullopt, adds all these messages.
   void AddEventsUntil(std::optional<std::int64_t> utime) {
     while (true) {
       if (!event_) event_ = events_.Next();

@@ -14,7 +14,8 @@ bool IsMcapExport(const std::filesystem::path& file);
 /// the log. Each channel of the log becomes a channel of the file, with the messages of the run.
 /// RUN is left out, because the scenario is the attachment scenario.json. log_time and publish_time
 /// of a message are its simulated time, and its sequence is its step. The metadata record "fogline"
-/// has the run's id, digest, steps, seed and title. Equal logs give equal files.
+/// says whether the log is complete. It also has the id, the digest and the number of steps of the
+/// run, and the title, the seed and the hash of the scenario. Equal logs give equal files.
 /// @throws InputError if `log` is not a log, or has messages that do not fit their channel, or if
 ///     `file` cannot be created; std::runtime_error when the disk is full; Interrupted
 /// @return the facts about the run in the log

@@ -1,6 +1,6 @@
 // The wire format of Protocol Buffers (protobuf.dev/programming-guides/encoding), as far as
-// messages of lcmtypes/ need it. A record is a tag, which has the number of the field and the kind
-// of its value, and the value.
+// messages of lcmtypes/ need it. A record consists of a tag and a value. The tag has the number of
+// the field and the kind of the value.
 #pragma once
 
 #include <cstdint>

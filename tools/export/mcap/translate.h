@@ -9,8 +9,9 @@ namespace fogline::mcap {
 
 /// Appends the message in the encoding that DescriptorSetOf() describes. Every member is written
 /// with all its bits, even if its value is zero.
-/// @param message with its fingerprint
-/// @return false if the bytes are not exactly one message of this type; `to` then has a part of it
+/// @param message an LCM message, with its fingerprint
+/// @return false if the bytes are not exactly one message of this type; `to` then has a part of the
+/// message
 bool AppendProtobuf(const web::LcmTypes& types, const web::LcmStruct& type, web::Bytes message,
                     std::string& to);
 

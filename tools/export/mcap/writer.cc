@@ -146,7 +146,7 @@ void Writer::PutChunk() {
 
 /// Writes the Message Index records of the chunk. @param offsets is set to the offset of the
 /// Message Index of each channel in the chunk
-/// @return bytes of all these records
+/// @return number of bytes of all these records
 std::uint64_t Writer::PutMessageIndexes(std::map<ChannelId, std::uint64_t>& offsets) {
   const std::uint64_t begin = offset_;
   for (auto& [channel, entries] : entries_) {
@@ -248,7 +248,7 @@ void Writer::PutSummary() {
   }
   const std::uint64_t summary_offset_start = offset_;
   Put(offsets);
-  // summary_crc: of the bytes from summary_start up to this number itself.
+  // summary_crc: of the bytes from summary_start up to, but not including, summary_crc.
   std::string footer;
   PutLittleEndian(summary_start, footer);
   PutLittleEndian(summary_offset_start, footer);

@@ -23,7 +23,7 @@ namespace fogline::mcap {
 using SchemaId = std::uint16_t;
 using ChannelId = std::uint16_t;
 
-/// Times are in nanoseconds since any epoch.
+/// Times are in nanoseconds. The caller chooses the epoch.
 struct Message {
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;

@@ -137,7 +137,7 @@ Scenario LoadDriven(const cli::ScenarioArguments& arguments) {
 int Drive(DriveArguments& arguments) {
   if (!arguments.listen.empty()) {
     const auto place = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
-    // Without a port, fogline-web takes one that is free.
+    // Without a port in --listen, fogline-web takes a free port.
     if (runtime::tcpq::HasPort(arguments.listen)) {
       runtime::tcpq::RequireFree(place, "--listen");
     }

@@ -254,8 +254,8 @@ int RunTrials(const RunTrialsArguments& arguments) {
   CheckMeans(plan.plan, results, options);
   WatchInterrupts();
   const auto pages = arguments.no_page ? nullptr : ServePages(arguments, options.run.traffic);
-  // Before this line, the first session of a participant has written nothing. If the session cannot
-  // begin, no addresses are printed.
+  // Begin() makes the folder of a new participant. Before this line, the first session of a
+  // participant has written nothing. The addresses are printed only if the session can begin.
   if (!lock) lock = results.Begin(arguments.participant);
   if (pages) PrintAddresses(*pages);
   trials::TerminalDesk terminal;

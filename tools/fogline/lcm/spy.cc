@@ -86,7 +86,8 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
 /// Waits for traffic that can be shown. @return the network of this traffic
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
-  // An announced run is found within this time, and takes precedence over other traffic.
+  // Time within which an announced run is found. An announced run takes precedence over other
+  // traffic.
   constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
   constexpr Duration kLookEvery = milliseconds(50);
   runtime::Bus bus(arguments.network.Url());

@@ -131,7 +131,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   }
   replay::LiveRoles roles(messages, options.traffic, realtime_);
   options.external = roles.roles();
-  options.verify = false;  // the recorded roles compute nothing
+  options.verify = false;  // recorded roles compute nothing, so they cannot be checked
   options.on_run = [&roles](std::int64_t run_id, const std::string& url) {
     roles.Join(run_id, url);
   };

@@ -31,7 +31,7 @@ def frame_of(log: Log, channel: str) -> pandas.DataFrame:
         table = _table_of_numbers(log, channel, kind)
     if channel not in STEP_CHANNELS:
         return table.drop(columns="utime").reset_index(drop=True)
-    # lcm-logger also records repairs, so the same step may come twice.
+    # lcm-logger also records messages that were sent again, so the same step may come twice.
     table = table.drop_duplicates("step").sort_values("step", kind="stable")
     return table.drop(columns="utime").set_index("step")
 
@@ -55,7 +55,8 @@ def _table_of_numbers(log: Log, channel: str, kind: type[Message]) -> pandas.Dat
     for size in numpy.unique(sizes):
         group = begins[sizes == size]
         tables.append(_table_of_equals(log, channel, kind, group, int(size)))
-    # A table is empty if its messages are of another run. Such a table may have more columns.
+    # A table is empty if its messages are of another run. Such a table is left out, because it may
+    # have more columns than the tables of this run.
     tables = [table for table in tables if len(table)] or tables[:1]
     return pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
 

@@ -16,8 +16,8 @@ from fogline_lab.messages import BY_FINGERPRINT, beacon_t
 BEACON_CHANNEL = "FOGLINE_BEACON"
 # LCM itself sends messages on this channel.
 _SELF_TEST = "LCM_SELF_TEST"
-# A run announces itself every 0.5 s. Without a beacon for this long it counts as ended
-# (services/runtime/discovery/announcements.h).
+# A run announces itself with a beacon every 0.5 s. A run counts as ended if no beacon has come for
+# this time (services/runtime/discovery/announcements.h).
 _GONE_S = 3.0
 # Longest time between two checks whether a run has ended.
 _LOOK_EVERY_S = 0.25
@@ -106,7 +106,8 @@ class Live:
             except FoglineError as error:  # the messages that came before are yielded first
                 lost = error
                 continue
-            # _wait() has also taken the messages that came while this process had no processor.
+            # _wait() has also taken the messages that came while this process got no processor
+            # time.
             if left is not None and left <= 0 and not self._heard:
                 return
 

@@ -129,7 +129,7 @@ class Log:
     def scenario_text(self) -> str:
         """The scenario of the run with every default, as JSON.
 
-        Raises LogError if the log lacks a part of it, because its logger came late.
+        Raises LogError if the log lacks a part of the scenario, because the logger started late.
         """
         parts: dict[int, str] = {}
         wanted = 1
@@ -184,7 +184,7 @@ class Log:
         return program.call_json(verb, self.path, *chosen)[0]
 
     def _tell(self, verb: str) -> dict[str, Any]:
-        """As _ask(), but with a warning in place of the error if the log is not complete."""
+        """Does the same as _ask(), but only warns if the log is not complete."""
         try:
             return self._ask(verb)
         except CheckFailed as error:
@@ -201,7 +201,7 @@ class Log:
         return self._data
 
     def events_of(self, channel: str) -> Events:
-        """Raises LogError for a channel that the log lacks."""
+        """The events of a channel. Raises LogError for a channel that the log lacks."""
         if channel not in self._events:
             raise LogError(
                 f"{self.path}: no channel {channel}; its channels: {', '.join(self.channels)}"
@@ -209,7 +209,9 @@ class Log:
         return self._events[channel]
 
     def type_of(self, channel: str) -> type[Message]:
-        """The type of the first message. Raises LogError for a type that this build does not know.
+        """The type of the first message of a channel.
+
+        Raises LogError for a type that this build does not know.
         """
         begin = self._events[channel].begins[0]
         fingerprint = bytes(self._data[begin : begin + 8])

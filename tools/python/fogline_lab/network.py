@@ -25,7 +25,7 @@ _WHOLE_HEAD, _FRAGMENT_HEAD = struct.Struct(">II"), struct.Struct(">IIIIHH")
 _DATAGRAM_BYTES = 1 << 16
 # Limits for messages that wait for fragments: number of messages, and bytes of one message.
 _MOST_PARTIAL, _MOST_BYTES = 64, 4 << 20
-# A call of read() returns after this many datagrams or pieces, also if more wait.
+# A call of read() returns after this many datagrams or pieces, even if more are waiting.
 _MOST_AT_ONCE = 1000
 # Size of the kernel's buffer for datagrams, in bytes (net.core.rmem_max limits it).
 _RECEIVE_BYTES = 2 << 20
@@ -217,7 +217,9 @@ class Relay:
         return None
 
     def _take(self, receiver: Receiver) -> bool:
-        """If the first message is complete, calls the receiver with it. @return whether it was"""
+        """If the first message is complete, calls the receiver with it.
+
+        @return whether the first message was complete"""
         if not self._greeted:
             if len(self._received) < 8:
                 return False
@@ -271,7 +273,7 @@ def may_be_followed(url: str) -> bool:
         return True
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            probe.bind((address.host, 0))  # only an address of this machine
+            probe.bind((address.host, 0))  # succeeds only for an address of this machine
         except OSError:
             return False
     return packed != b"\0\0\0\0"

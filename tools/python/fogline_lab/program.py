@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from fogline_lab.log import Log
 
-# True: the program's own bar on stderr. A function is called with the numbers done and total.
+# How a call shows its progress. True: the program shows its own bar on stderr. False: nothing. A
+# function is called with the numbers done and total. None: a bar if a person sees stderr.
 Progress = Union[bool, Callable[[int, int], None], None]
 
 # The program's bar: "[===   ]  40 %  row 40/100  800/s  3 s left". A new bar replaces the old one.
@@ -62,7 +63,7 @@ def call(*arguments: str, progress: Progress = None) -> str:
 
 
 def call_json(verb: str, *arguments: str, progress: Progress = False) -> Any:
-    """`call` with --json: returns the document."""
+    """Does the same as `call` with the option --json. Returns the JSON document."""
     return json.loads(call(verb, *arguments, "--json", progress=progress))
 
 
@@ -124,7 +125,7 @@ def _listen(terminal: int, progress: Any, lines: list[str], failures: list[BaseE
             elif callable(progress):
                 try:
                     progress(int(bar[1]), int(bar[2]))
-                except BaseException as error:  # raised by the thread that called the program
+                except BaseException as error:  # the thread that called the program raises it later
                     failures.append(error)
             else:
                 shown = True
@@ -165,8 +166,10 @@ class Run:
 
 
 def options_of(options: Mapping[str, Any]) -> list[str]:
-    """Options of a command line: `lcm_url="udpm://..."` is `--lcm-url udpm://...`, a list repeats
-    its option, True is an option without a value, False and None are left out."""
+    """Options of a command line: `lcm_url="udpm://..."` becomes `--lcm-url udpm://...`.
+
+    A list repeats its option. True becomes an option without a value. False and None are left
+    out."""
     words: list[str] = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")

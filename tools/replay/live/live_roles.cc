@@ -12,7 +12,7 @@ namespace {
 
 // A thread checks at least this often whether it should end.
 constexpr Duration kLookEvery = milliseconds(50);
-// Priority of the threads in real time, as that of the processes of roles.
+// Priority of the threads in real time. The processes of roles have the same priority.
 constexpr int kPriority = 1;
 
 }  // namespace
@@ -48,8 +48,9 @@ void LiveRoles::Join(std::int64_t run_id, const std::string& url) {
 }
 
 void LiveRoles::TakePart(Part& part) const {
-  // The thread starts one that keeps the backlog of its bus. The runner reports a refusal of the
-  // kernel for the roles.
+  // The priority also applies to the thread that this thread starts for the backlog of its bus. The
+  // result is not used: the runner itself reports the roles to which the kernel refuses the
+  // priority.
   if (realtime_) RunThreadBeforeOthers(kPriority, /*with_its_threads=*/true);
   runtime::Node& node = part.node->node();
   try {
@@ -58,7 +59,7 @@ void LiveRoles::TakePart(Part& part) const {
       part.bus->Wait(std::min(node.Poll(now) - now, kLookEvery));
     }
   } catch (const std::exception& error) {
-    node.parts().own.Fail(error.what());  // the runner reports this error, and ends the run
+    node.parts().own.Fail(error.what());  // the runner then reports this error, and ends the run
   }
 }
 

@@ -17,7 +17,7 @@ RecordedMessages::RecordedMessages(const std::filesystem::path& log,
     : channels_(std::move(channels)), reader_(log, options) {
   while (const log::StepMessages* messages = reader_.Next()) {
     if (reader_.InTail()) continue;
-    messages_.resize(static_cast<std::size_t>(reader_.step()));  // earlier steps have no messages
+    messages_.resize(static_cast<std::size_t>(reader_.step()));  // missing steps stay empty
     std::vector<runtime::Bytes>& row = messages_.emplace_back();
     for (const std::size_t channel : channels_) {
       const runtime::Bytes message = (*messages)[channel];

@@ -96,7 +96,8 @@ class Gnuplot {
       Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
     Fail("gnuplot", std::strerror(error));
   }
-  /// Closes the pipe. gnuplot then ends at its next write.
+  /// Closes the pipe, and waits until gnuplot ends. gnuplot ends at its next write into the closed
+  /// pipe.
   ~Gnuplot() { Wait(); }
   Gnuplot(const Gnuplot&) = delete;
   Gnuplot& operator=(const Gnuplot&) = delete;
@@ -122,7 +123,7 @@ class Gnuplot {
   }
 
  private:
-  /// @return 0, or errno
+  /// @return 0, or the error number if gnuplot cannot be started
   int Start(const Streams& streams) {
     std::string name = "gnuplot";
     std::string ignore_personal_settings = "-d";

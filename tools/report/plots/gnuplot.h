@@ -21,9 +21,9 @@ inline constexpr double kWidth = 1600;
 /// A figure's file name: figure-NAME with the suffix of the format.
 std::string FigureFile(FigureFormat format, std::string_view name);
 
-/// Commands for a picture of this format, kWidth wide: in pixels for PNG and SVG, in 1/200 inch for
-/// PDF. The commands set gnuplot's variable `point_scale`, by which point sizes must be multiplied
-/// in this format.
+/// Commands for a picture of this format. The picture is kWidth wide. The unit of kWidth is a pixel
+/// for PNG and SVG, and 1/200 inch for PDF. The commands also set gnuplot's variable `point_scale`.
+/// In this format, point sizes must be multiplied by this variable.
 std::string Terminal(FigureFormat format, double height);
 
 /// Commands for axes and grid.
@@ -51,7 +51,7 @@ std::string Margins(const Place& place);
 
 /// NameOfX(): commands that put the name of the x axis below the next plot. NameOfY(): commands
 /// that put the name of the y axis at the left edge of the picture, at the height `middle` (a share
-/// of the picture's height). The distances of both names do not depend on the font.
+/// of the picture's height). The positions of both names do not depend on the font.
 std::string NameOfX(std::string_view name, double height);
 std::string NameOfY(std::string_view name, double middle);
 

@@ -24,13 +24,13 @@ struct DelayStatement {
 };
 std::span<const DelayStatement> DelayStatements();
 
-/// The sentence of the claim. If `noise` is not the usual noise, the sentence begins with the
-/// noise.
+/// The sentence of the claim. If `noise` is not the usual noise, the sentence begins with the name
+/// of the noise, such as "With realistic noise".
 std::string SaysOf(const DelayStatement& statement, std::string_view noise);
 
 /// The claims of DelayStatements(), without the claims that follow from the formulas
-/// (`is_by_definition`). The runs have bias fog, the usual noise, and `overrides` of paper.json.
-/// Thresholds and means come from RunDelays().
+/// (`is_by_definition`). The runs use paper.json with `overrides`, with bias fog and the usual
+/// noise. Thresholds and means come from RunDelays().
 /// @throws InputError, StudyStopped
 std::vector<Claim> RunDelayClaims(const StudyContext& context,
                                   const std::vector<std::string>& overrides);

@@ -1,5 +1,5 @@
-// Alarms of detectors from their scores: thresholds with an equal rate of false alarms, and the
-// share of steps in fog that a threshold detects.
+// Computes the alarms of detectors from their scores. Also finds thresholds that give all detectors
+// the same rate of false alarms, and the share of steps in fog that a threshold detects.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace fogline::study {
 
-/// A score above all earlier scores of a run, and its time in s after the beginning.
+/// A score of a run that is above all earlier scores of this run, and its time in s since the end
+/// of the warm-up.
 struct ScoreRecord {
   double score;
   double time_s;
@@ -21,7 +22,7 @@ struct ScoreRecord {
 using ScoreRecords = std::vector<ScoreRecord>;
 /// Adds a score if it is a record.
 void AddScore(double score, double time_s, ScoreRecords& records);
-/// Time in s at which a threshold is first reached; nullopt if it is never reached.
+/// Time in s at which a score first reaches the threshold; nullopt if no score reaches it.
 std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold);
 
 /// Scores of a detector in a run in clear air, after the warm-up.
@@ -36,8 +37,9 @@ struct AlarmCount {
   std::int64_t alarms = 0;
   double time_s = 0;  // total time of all runs until their alarm or end
 
-  /// Mean time to a false alarm (ARL0), s, if the times have an exponential distribution. Runs
-  /// without an alarm are censored at their end. The mean time is infinite if no run has an alarm.
+  /// Mean time to a false alarm (ARL0), s: the total time divided by the number of alarms. This
+  /// estimate assumes that the times have an exponential distribution. The time of a run without an
+  /// alarm is its whole length (a censored time). The mean time is infinite if no run has an alarm.
   double ArlZero_s() const;
   /// Exact 95 % bounds of this mean time (chi-square; Garwood 1936).
   std::pair<double, double> ArlZeroBounds_s() const;
@@ -46,7 +48,7 @@ struct AlarmCount {
 };
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
 
-/// Finds thresholds from runs in clear air. Each call may give the runs other weights.
+/// Finds thresholds from runs in clear air. The weights of the runs may differ from call to call.
 class ThresholdFinder {
  public:
   explicit ThresholdFinder(std::span<const ClearRun> runs);
@@ -68,12 +70,12 @@ class ThresholdFinder {
   std::vector<double> durations_s_;
 };
 
-/// Probability that a score in fog is above a score in clear air, where equal scores count half:
-/// the area under the ROC (Mann & Whitney 1947). @param clear sorted
+/// Probability that a random score in fog is above a random score in clear air. Equal scores count
+/// half. This is the area under the ROC curve (Mann & Whitney 1947). @param clear sorted
 double AreaUnderRoc(std::span<const double> fog, std::span<const double> clear);
 
-/// Share of scores in fog above a threshold. The threshold is the lowest one for which at most a
-/// share `false_positives` of the scores in clear air are above it. @param clear sorted
+/// Share of the scores in fog that are above a threshold. The threshold is the lowest one that at
+/// most a share `false_positives` of the scores in clear air exceed. @param clear sorted
 double TruePositives(std::span<const double> fog, std::span<const double> clear,
                      double false_positives);
 

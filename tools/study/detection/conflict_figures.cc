@@ -22,7 +22,8 @@ void ShowTelling(report::StudyFigure& figure, const ConflictSet& set) {
   if (!ranked.empty()) figure.series[ranked.back()].shown = true;
 }
 
-/// A figure of a quantity of every measure as a function of the visibility.
+/// A figure of one quantity (`value`) as a function of the visibility, with a series for each
+/// measure.
 report::StudyFigure OverVisibility(const ConflictSet& set, std::string id, std::string title,
                                    std::string y_label, Estimate DetectorOutcome::*value) {
   report::StudyFigure figure{.id = std::move(id),

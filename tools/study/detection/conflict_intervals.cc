@@ -17,7 +17,8 @@ namespace {
 constexpr Stream kClearAir{1002};
 constexpr Stream kFog{1003};
 
-/// Mean delay, and share of detected fogs, of one detector at one threshold, by visibility.
+/// Results of one detector at one threshold: for each visibility the mean delay and the share of
+/// the fogs that are detected, and the mean delay over the ranked visibilities.
 struct Detection {
   std::vector<double> delay_s;
   std::vector<double> share;

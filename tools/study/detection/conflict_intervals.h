@@ -12,8 +12,8 @@
 
 namespace fogline::study {
 
-/// Runs of one detector. Its threshold is found from the runs in clear air. The records of its
-/// scores in fog are ordered by visibility and seed.
+/// Runs of one detector. The threshold of the detector is found from the runs in clear air. `fog`
+/// has the records of the scores in fog, by visibility and seed.
 struct DetectorRuns {
   std::span<const ClearRun> clear;
   std::span<const std::vector<ScoreRecords>> fog;
@@ -24,7 +24,7 @@ struct DetectionRule {
   double arl_zero_s = 0;                   // mean time to a false alarm at the thresholds
   double missed_s = 0;                     // delay that is used for an undetected fog
   std::vector<std::size_t> ranked;         // indices of the visibilities whose delays are averaged
-  std::optional<std::size_t> reference{};  // detector that is subtracted in differences
+  std::optional<std::size_t> reference{};  // detector whose delay is subtracted from each delay
   int jobs = 1;
 };
 
@@ -38,7 +38,7 @@ struct DetectionMeans {
   Estimate delay_s;  // mean over the ranked visibilities; NaN if no visibility is ranked
 };
 
-/// Detection by one detector, and its differences from the reference.
+/// Detection by one detector, and the differences from the reference (DetectionRule::reference).
 struct DetectionComparison {
   DetectionMeans detector;
   std::vector<Estimate> delay_minus_other_s;  // by visibility

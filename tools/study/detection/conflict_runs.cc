@@ -51,7 +51,7 @@ void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, Clea
   }
 }
 
-/// Adds AUC and ROC of every detector to the outcome of a condition. They need no threshold.
+/// Adds AUC and ROC of every detector to the outcome of a condition. AUC and ROC need no threshold.
 void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   const std::vector<double> doc = gathered.front().auc.Result();
   for (const Gathered& one : gathered) {
@@ -251,8 +251,8 @@ Estimate ConflictSet::Difference(std::size_t a, std::size_t b) const {
 }
 
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
-  // Units for each seed: two runs in clear air, one run in each fog, and the long runs in clear air
-  // for quick and for slow detectors.
+  // Units of progress for each seed: two runs in clear air, one run in each fog, and the long runs
+  // in clear air for quick and for slow detectors.
   constexpr std::size_t kUnits = 2 + kVisibilities_m.size() + 2;
   const std::int64_t all =
       context.seeds.count() *

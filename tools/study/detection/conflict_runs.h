@@ -28,12 +28,13 @@ inline constexpr double kArlZero_s = 600;
 /// times count as equal.
 inline constexpr double kLoosest = 1.5;
 /// Number of runs in clear air for each seed, for the thresholds of quick detectors and of slow
-/// detectors (detector_bank.h). These numbers apply if a condition of the set ranks detectors.
-/// Otherwise there is one run for each seed.
+/// detectors (detector_bank.h). These numbers apply if at least one condition of the set ranks
+/// detectors (telling.h). Otherwise there is one run for each seed.
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
-/// First seeds in clear air. They are far from the seeds in fog, and from each other. So the runs
-/// that give the thresholds differ from the runs in which false alarms are counted again.
+/// First seeds of the runs in clear air. They are far from the seeds in fog, and from each other.
+/// So the runs that give the thresholds differ from the runs in which false alarms are counted
+/// again.
 inline constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 inline constexpr std::int64_t kValidationSeeds = 2'000'000'000;
 inline constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
@@ -116,15 +117,15 @@ struct DelayOutcome {
   DetectionComparison detection;
 };
 
-/// Number of runs in clear air for each seed in RunDelays(). The thresholds come from fewer false
-/// alarms than in RunConflictSets(), about four for each seed.
+/// Number of runs in clear air for each seed in RunDelays(). The thresholds come from about four
+/// false alarms for each seed, fewer than in RunConflictSets().
 inline constexpr std::int64_t kDelayClearAir = 20;
 /// Units of progress for each seed in RunDelays().
 inline constexpr std::int64_t kDelayUnits = 1 + static_cast<std::int64_t>(kVisibilities_m.size());
 
 /// Runs some detectors in bias fog with the usual noise, and with overrides of paper.json.
 /// @param detectors indices in Detectors()
-/// @param overrides of other fields than those of the fog model and the noise
+/// @param overrides changes of paper.json, but not of the fog model and the noise
 /// @throws InputError, StudyStopped
 std::vector<DelayOutcome> RunDelays(const StudyContext& context,
                                     std::span<const std::size_t> detectors,

@@ -34,8 +34,8 @@ std::vector<std::string> OverridesOf(const ConflictSituation& situation) {
   return overrides;
 }
 
-/// A scenario with these overrides that lasts for `duration_s` after the warm-up. The measures know
-/// the mounting offset of the sensors.
+/// The scenario paper.json with these overrides. The run lasts for `duration_s` after the warm-up.
+/// The measures of conflict know the mounting offset of the sensors.
 Scenario ConflictScenario(const StudyContext& context, const std::vector<std::string>& overrides,
                           double duration_s) {
   Scenario scenario = context.Load("paper.json", overrides);

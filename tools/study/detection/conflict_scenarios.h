@@ -35,9 +35,9 @@ struct ConflictSituation {
   std::vector<std::string> other{};  // in the form of --set
 };
 
-/// A scenario without fog that lasts kClearRun_s after the warm-up. The measures know the mounting
-/// offset of the sensors: measure_offset_m is the radar's offset minus the LiDAR's offset. The
-/// human always drives.
+/// A scenario without fog that lasts kClearRun_s after the warm-up. The measures of conflict know
+/// the mounting offset of the sensors: measure_offset_m is the radar's offset minus the LiDAR's
+/// offset. The human always drives.
 /// @throws InputError
 Scenario ScenarioInClearAir(const StudyContext& context, const ConflictSituation& situation);
 

@@ -15,15 +15,16 @@ namespace fogline::study {
 
 /// Name of a set, such as "bias, near-range noise".
 std::string NameOfSet(const ConflictSet& set);
-/// The names of all detectors that count as this detector.
+/// The names of all detectors that count as the same detector as this one.
 std::string NamesOf(const ConflictSet& set, std::size_t detector);
 /// The detectors that have a threshold, the shortest mean delay first. If no condition of the set
 /// ranks detectors, they are in the order of Detectors(). Of the detectors with the same alarms,
 /// the list has only one.
 std::vector<std::size_t> Ranked(const ConflictSet& set);
 
-/// Detectors, in order from the distance of a single step to the Degree of Conflict. Each detector
-/// has one part of the Degree of Conflict more than the detector before it.
+/// A detector of kDocParts. The list kDocParts begins with the distance of a single step, and ends
+/// with the Degree of Conflict. Each detector has one part of the Degree of Conflict more than the
+/// detector before it.
 struct DocPart {
   std::string_view name;
   std::string_view detector;
@@ -45,12 +46,12 @@ report::StudyTable TableOfOptions(const ConflictSet& set);
 /// share a row. The detectors without a threshold come last.
 report::StudyTable TableOfDetectors(const ConflictSet& set);
 
-/// Figures of delay, AUC and ROC of the measures. Only the tables have the combinations with window
-/// and sign.
+/// Figures of the delay, the AUC and the ROC of each measure. Only the tables also have the
+/// combinations of a measure with window and sign.
 std::vector<report::StudyFigure> FiguresOf(const ConflictSet& set);
 
 std::string ConflictCsv(std::span<const ConflictSet> sets);
-/// The ROC of the measures with the usual noise.
+/// The ROC of the measures as CSV, only for the usual noise.
 std::string RocCsv(std::span<const ConflictSet> sets);
 
 }  // namespace fogline::study

@@ -21,8 +21,8 @@ namespace fogline::study {
 /// Parameters of the measures in a scenario. The width of bins and the shift of the SPRT depend on
 /// the noise of the scenario's sensors. Fixed parameters would be tuned to only one of several
 /// noises. The width of bins is the larger standard deviation of the two sensors, but at least
-/// ConflictParameters::smallest_std_m. The SPRT tests for the same shift as the CUSUM: 2
-/// cusum_kappa standard deviations of the difference of the sensors.
+/// ConflictParameters::smallest_std_m. The SPRT tests for the same shift as the CUSUM. This shift
+/// is 2 * cusum_kappa standard deviations of the difference of the sensors.
 conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
 
 /// The measure abs(d) in m, with d = radar - LiDAR - known mounting offset. Window, known sign and
@@ -51,7 +51,7 @@ std::vector<std::size_t> AllDetectors();
 std::vector<std::size_t> QuickDetectors();
 std::vector<std::size_t> SlowDetectors();
 
-/// Computes the scores of some detectors. For use by one thread.
+/// Computes the scores of some detectors. Only one thread may use a bank.
 class DetectorBank {
  public:
   /// @param detectors indices in Detectors()
@@ -60,7 +60,7 @@ class DetectorBank {
 
   /// The scores of this step, in the order of the detectors. Call it once per step.
   std::span<const double> Step(const conflict::Evidence& evidence);
-  /// Restores the state after construction.
+  /// Restores the state that the bank had directly after its construction.
   void Reset();
 
  private:

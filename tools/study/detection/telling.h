@@ -1,5 +1,6 @@
-// Finds the detectors with the same alarms, because they count as one detector. Also finds the
-// conditions that can rank detectors.
+// Finds detectors that have the same alarms, because such detectors count as one detector. Also
+// finds the conditions that rank detectors. A condition ranks detectors if some detector finds
+// enough fogs, and if the delays of the detectors differ enough to put the detectors into an order.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +10,16 @@
 
 namespace fogline::study {
 
-/// The first alarm of a detector in each run, s; negative in a run without an alarm.
+/// Time of the first alarm of a detector in each run, s; negative in a run without an alarm.
 struct AlarmTimes {
   std::vector<double> common;   // in the runs that all detectors have
-  std::vector<double> further;  // in runs that only some detectors have; empty for other detectors
+  std::vector<double> further;  // in runs that only some detectors have; empty without such runs
 };
 
 /// For each detector, the index of the detector that it counts as. Detectors with the same alarms
 /// in all compared runs count as one of them, the one with the most runs. Every other detector
 /// counts as itself. The further runs of two detectors are compared only if both detectors have
-/// equally many further runs, because then these are the same runs.
+/// equally many further runs, because only then are these the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
 /// Whether a condition ranks detectors; if not, the reason.
@@ -36,7 +37,9 @@ struct DelayAndShare {
   double share;
 };
 /// @param shortest_s delays that differ by less than this time count as the same time
-/// @return whether the condition can rank the detectors; kRanks if there are no detectors
+/// @return kHardlyAny if every detector finds less than a tenth of the fogs. Otherwise kAllAtOnce
+/// if the delays of nine of ten detectors count as the same time. Otherwise, and if there are no
+/// detectors, kRanks.
 Telling TellingOf(std::span<const DelayAndShare> detectors, double shortest_s);
 
 }  // namespace fogline::study

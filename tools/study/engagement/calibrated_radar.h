@@ -8,13 +8,15 @@
 
 namespace fogline::study {
 
-/// The ACC's standstill gap, m, for an ACC whose measured distance has no offset. With this value
-/// the ACC keeps the host's gap of step 0. The value is this gap minus the ACC's time gap
-/// (headway_s) times the host's speed in step 0, at least 0, rounded to 0.1 mm.
+/// The standstill gap, m, of an ACC whose measured distance has no offset. With this standstill gap
+/// the ACC keeps the gap that the host has in step 0. The value is the gap of step 0 minus the
+/// ACC's time gap (headway_s) times the host's speed in step 0. It is at least 0, and is rounded to
+/// 0.1 mm.
 double StandstillWithoutOffset(const Scenario& scenario);
 
-/// Overrides for a radar without the offset of this scenario. The offset is also subtracted from
-/// the centre of the DoC. The ACC keeps the host's gap of step 0.
+/// Overrides that remove the radar's offset from this scenario. They also subtract the offset from
+/// the centre of the DoC. They set the ACC's standstill gap so that the ACC keeps the host's gap of
+/// step 0.
 std::vector<std::string> CalibratedRadar(const Scenario& scenario);
 
 }  // namespace fogline::study

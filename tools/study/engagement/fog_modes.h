@@ -24,7 +24,8 @@ struct FogMode {
   StudyCase Case(std::string_view with, const std::vector<std::string>& more = {}) const;
 };
 
-/// Bias (paper.json), near echo (dense_fog.json), missing echo.
+/// The three modes: bias (paper.json), near echo (dense_fog.json), and missing echo (dense_fog.json
+/// with overrides).
 const std::vector<FogMode>& FogModes();
 /// Text that explains the modes, for the method of a study.
 std::string_view FogModesText();

@@ -81,7 +81,7 @@ std::vector<StudyVariant> MainVariants() {
   return variants;
 }
 
-/// Each fog with each human, and with realistic noise.
+/// Each fog with each human. The radar has realistic noise.
 std::vector<StudyCase> NoisyCases() {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
@@ -151,8 +151,8 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
 }
 
 /// A table of the mean compromised safety. Its rows are the mean times to take over, with each
-/// human. Its columns are the fogs, with two behaviours of the automation. @param noise the end of
-/// the names of the cases
+/// human. Its columns are the fogs, with two behaviours of the automation.
+/// @param noise the end of the names of the cases: "" or kWithRealisticNoise
 report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_view noise) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog{} (m), means over {} seeds [95 % "
@@ -239,7 +239,7 @@ std::vector<PlannedClaim> TakeOverClaims() {
   };
 }
 
-/// Those claims that support the answer, repeated with realistic noise.
+/// Repeats, with realistic noise, the claims that support the answer.
 std::vector<PlannedClaim> NoisyClaims() {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {

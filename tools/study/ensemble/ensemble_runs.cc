@@ -168,7 +168,8 @@ void RunStringOf(const Ensemble& ensemble, const StudyContext& part, std::size_t
   result.runs += static_cast<std::int64_t>(strings.size()) * part.seeds.count();
 }
 
-/// Adds claims with a parameter set to the quoted claims of this study that have the same text.
+/// Adds claims of the study `study`, computed with one parameter set, to the quoted claims of this
+/// study that have the same text.
 void AddClaims(std::string_view study, const EnsembleSet& set, std::vector<Claim> claims,
                EnsembleRuns& result) {
   for (Claim& claim : claims) {
@@ -207,7 +208,7 @@ void RunDelaysOf(const Ensemble& ensemble, const StudyContext& part, const Ensem
   result.runs += of_seed * part.seeds.count();
 }
 
-/// A part of the runs of this study, with seeds and progress of its own.
+/// A part of the runs of study `ensemble`, with seeds and progress of its own.
 struct Job {
   std::int64_t one_of = 1;
   std::int64_t times = 1;
@@ -251,8 +252,8 @@ std::vector<SharedRuns> PlanShared(const Ensemble& ensemble) {
   return all;
 }
 
-/// Adds a job for each set, if a claim of this study is quoted. The claims of this study share all
-/// runs of a job.
+/// Adds a job for each parameter set, if a claim of the study `study` is quoted. All quoted claims
+/// of this study share the runs of a job.
 template <class Run>
 void AddJobs(const Ensemble& ensemble, std::string_view study, std::int64_t units, Run run,
              std::vector<Job>& jobs) {

@@ -17,9 +17,9 @@ struct EnsembleRuns {
   std::int64_t runs = 0;
 };
 
-/// Runs only the cases and variants of a study that the claims compare. Claims of one study that
-/// have a case in common share runs: all their cases with all their variants. All sets have the
-/// same seeds.
+/// Runs, for each study, only the cases and variants that the quoted claims compare. Quoted claims
+/// of one study that have a case in common share runs: all their cases are run with all their
+/// variants. All sets have the same seeds.
 /// @throws InputError, StudyStopped; std::out_of_range if a quoted claim does not exist in its
 /// study
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,

@@ -134,7 +134,7 @@ report::StudyFigure SetsFigure(std::span<const EnsembleSet> sets,
       if (!claim.p) largest = std::max(largest, std::abs(claim.difference.mean));
     }
     for (std::size_t s = 0; s < sets.size(); ++s) {
-      // A claim with a p-value compares shares of seeds. Its difference is not a difference in
+      // A claim that has Claim::p compares shares of seeds. Its difference is not a difference in
       // safety, so the figure has no point for this claim.
       const Estimate in_set = in_sets[s].p ? Estimate{} : in_sets[s].difference;
       const bool is_turned = in_sets[s].sign == Sign::kLess;

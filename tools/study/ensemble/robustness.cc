@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSurelyBelow = 0.05;
 
-/// Whether the difference is on the claimed side of 0 or of a bound, and the p-value of the side on
-/// which the difference is.
+/// The side of 0, or of a bound, on which the difference is. `is_claimed` is true if the claim
+/// states this side. `p` is the p-value of the statement that the difference is on this side.
 struct OneSide {
   bool is_claimed;
   double p;

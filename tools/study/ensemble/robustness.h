@@ -50,7 +50,8 @@ struct JudgedInSet {
   double p_holm = 1;  // adjusted for all claims in all sets
 };
 
-/// Judges every claim in every set, at 5 % after Holm's correction for all of them together.
+/// Judges every claim in every set at a level of 5 %, after Holm's correction for all claims in all
+/// sets together.
 /// @return for each claim its outcomes, in the order of the sets
 std::vector<std::vector<JudgedInSet>> JudgeInSets(std::span<const ClaimInSets> claims);
 
@@ -95,11 +96,13 @@ std::vector<InSet> VerdictsOn(std::span<const std::vector<JudgedInSet>> claims);
 /// For each set, the verdict that the study's author states.
 std::vector<InSet> VerdictsOn(const ExaminedPart& examined, std::size_t sets);
 
-/// "set 3", "sets 3 and 7", "sets 3, 5 and 7"; "all eight parameter sets" if these are all.
+/// The numbers of some sets as text: "set 3", "sets 3 and 7", "sets 3, 5 and 7"; "all eight
+/// parameter sets" if `numbers` has all sets.
 std::string SetsText(std::span<const int> numbers, std::size_t sets);
 
-/// "holds in sets 1 and 2; opposite in set 3; undecided in set 4. ...": the verdicts that the
-/// author states, and then ExaminedPart::why. For side claims the verb is "hold".
+/// A sentence with the verdicts that the author states, and then ExaminedPart::why. An example:
+/// "holds in sets 1 and 2; opposite in set 3; undecided in set 4. ...". For side claims the verb is
+/// "hold".
 std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
 
 /// Makes a claim about one part of a finding. The claim says: the verdicts that the runs give on

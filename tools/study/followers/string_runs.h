@@ -21,8 +21,8 @@ inline constexpr std::size_t kStringCars = 5;
 /// the car at place 0, and has only a deceleration.
 struct CarInString {
   std::vector<double> max_deceleration_mps2;
-  /// Ratio of the car's deceleration to the deceleration of the car ahead. A disturbance grows if
-  /// the ratio is above 1. NaN if the car ahead did not brake.
+  /// Ratio of the car's largest deceleration to the largest deceleration of the car ahead. A
+  /// disturbance grows if the ratio is above 1. NaN if the car ahead did not brake.
   std::vector<double> amplification;
   std::vector<double> min_ttc_s;  // infinite if the car was never faster than the car ahead
   std::vector<double> min_gap_m;

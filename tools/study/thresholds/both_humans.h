@@ -21,7 +21,7 @@ struct HumanMix {
   MixedRadar radar;
   MixedRuns runs;
 
-  /// "perfect human", "fallible human with realistic noise".
+  /// Name of the mix, such as "perfect human" or "fallible human with realistic noise".
   std::string Name() const;
 };
 

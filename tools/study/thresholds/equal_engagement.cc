@@ -34,8 +34,9 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : stats::kMissing;
 }
 
-/// Distance in gain of a point of the curve from the straight line between its neighbours. nullopt
-/// at the ends of the curve, and if the RHE of the point is not between the RHEs of its neighbours.
+/// Distance in gain between a point of the curve and the straight line between its two neighbours.
+/// The result is nullopt at the ends of the curve, and if the RHE of the point is not between the
+/// RHEs of its neighbours.
 std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
   if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
   const std::array neighbours{curve[point - 1], curve[point + 1]};

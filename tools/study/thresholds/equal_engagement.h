@@ -58,14 +58,18 @@ struct AtEqualEngagement {
 std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
                                             std::span<const RuleValues> rules);
 
-/// Possible error of the interpolation at a place of the curve. The place is on a stretch between
-/// two points. Each of these points has a distance in gain from the straight line between its own
-/// neighbours. With h the length of the stretch and g the length of the other stretch at this
-/// point, d is the larger value of distance max(1, (g + h)/(2 g)), and s is the place's `share`. If
-/// the curve bends once within the stretch, or steadily, and both points have a distance, the error
-/// is at most 4 s (1 - s) d. At a point of the curve the error is 0. If only one point has a
-/// distance, its value is used. If neither has one, the difference in gain between the points is
-/// used for d.
+/// Possible error of the interpolation at a place of the curve. At a point of the curve the error
+/// is 0. Any other place is between two points of the curve. For each of these two points:
+/// - e is the distance in gain between the point and the straight line between its own two
+///   neighbours. Some points have no e, such as the ends of the curve.
+/// - h is the difference in RHE between the two points.
+/// - g is the difference in RHE between the point and its neighbour on the other side.
+///
+/// The result is 4 s (1 - s) d, where s is the place's `share`, and d is the larger of the two
+/// values e max(1, (g + h)/(2 g)). If only one point has an e, d is the value of this point. If no
+/// point has an e, d is the difference in gain between the two points. The error is at most this
+/// result if both points have an e, and if the curve bends once between the two points, or bends
+/// steadily.
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline::study

@@ -29,7 +29,7 @@ struct Range {
 };
 
 // The mix is our choice. Each range contains the value of paper.json. The leader of paper.json
-// keeps its speed, so its amplitude is 0.
+// keeps its speed, so the amplitude of this speed is 0.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of the fog model `bias`; paper.json has 0.216

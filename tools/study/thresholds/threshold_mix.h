@@ -13,7 +13,8 @@
 
 namespace fogline::study {
 
-/// A rule with a parameter that trades engagement against safety.
+/// A kind of rule with a parameter that trades human engagement against safety. Each member of the
+/// family is the rule with one value of the parameter.
 struct RuleFamily {
   std::string name;
   std::vector<double> values;  // values of the parameter, one for each member
@@ -41,7 +42,7 @@ struct MixedRuns {
 
 /// The human who takes over in the situations.
 enum class MixedHuman {
-  kDrawn,     // half of the humans judge correctly and stay aware; fog limits everyone's sight
+  kDrawn,     // half of the humans judge correctly and stay aware; fog limits the sight of all
   kPerfect,   // the paper's human
   kFallible,  // sees only as far as fog allows, misjudges distances and loses awareness
 };
@@ -58,7 +59,7 @@ std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
 
 /// Runs all situations. Each seed has one situation, which is the same for every rule, human and
 /// radar.
-/// @param overrides of paper.json, for the fields that do not vary between situations
+/// @param overrides changes of paper.json, for fields that do not vary between situations
 /// @throws InputError, StudyStopped
 MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
                  MixedRadar radar, std::vector<std::string> overrides = {});

@@ -63,7 +63,7 @@ Beside BesideFixed(const MixedRuns& mixed) {
   return beside;
 }
 
-/// "fixed 0.341": the threshold at a place of the curve.
+/// Name of the threshold at a place of the curve, such as "fixed 0.341".
 std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
   const auto& fixed = mixed.families.front().values;
   const double threshold = place.share == 0

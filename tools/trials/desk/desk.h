@@ -18,8 +18,8 @@ namespace fogline::trials {
 struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs
-  double not_before_s = 0;       // a break: least time until the run begins
-  bool seat = false;             // the participant drives, at the seat in the browser
+  double not_before_s = 0;       // in a break: least time until the run begins
+  bool seat = false;             // whether the participant drives, at the seat in the browser
   std::string for_experimenter;  // the condition and its seed; never shown to the participant
 };
 

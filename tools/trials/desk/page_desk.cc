@@ -155,7 +155,8 @@ class PageDesk::Pages {
             experimenter_files_, experimenter_view_)),
         traffic_(options.traffic),
         run_page_(ForRuns(options)) {
-    // fogline-web listens at this place in each run. The check comes before the participant begins.
+    // fogline-web listens at this place in each run. The place is checked now, so that an error
+    // comes before the participant begins.
     const Place seat{{AddressOf(options), options.seat_port}, "--seat-port"};
     runtime::tcpq::RequireFree(seat.endpoint, seat.OptionText());
     Publish();
@@ -163,7 +164,8 @@ class PageDesk::Pages {
   }
 
   ~Pages() {
-    // The thread may be late on a busy machine. It first sends the last state to the pages.
+    // On a busy machine the thread of the servers may be late. It must send the last state to the
+    // pages before it stops the servers. So this destructor waits for it.
     std::promise<void> stopped;
     asio::post(context_, [&] {
       participant_->Stop();

@@ -25,8 +25,8 @@ struct PageOptions {
   std::string listen;
   std::uint16_t participant_port = 0;   // 0: any free port
   std::uint16_t experimenter_port = 0;  // 0: any free port
-  std::uint16_t seat_port = 0;          // of fogline-web; 0: any free port
-  runtime::TrafficOptions traffic;      // of the runs
+  std::uint16_t seat_port = 0;          // port of fogline-web; 0: any free port
+  runtime::TrafficOptions traffic;      // options of the runs
 };
 
 class PageDesk final : public Desk {
@@ -51,7 +51,7 @@ class PageDesk final : public Desk {
  private:
   class Pages;
   std::unique_ptr<Pages> pages_;
-  bool seat_ = false;  // the participant drives in the next run, or in this one
+  bool seat_ = false;  // whether the participant drives in the next or the current run
 };
 
 }  // namespace fogline::trials

@@ -18,7 +18,8 @@ constexpr Duration kPageLimit = milliseconds(10'000);
 // The pause before fogline-web is started again. It doubles with each failed start.
 constexpr Duration kFirstPause = milliseconds(500);
 constexpr Duration kLongestPause = milliseconds(8000);
-// After this number of failed starts, in 7.5 s or more, the cause is assumed to be permanent.
+// After this number of failed starts in a row, the cause is assumed to be permanent. The pauses
+// between these starts take 7.5 s together.
 constexpr int kMostFailures = 5;
 
 }  // namespace
@@ -68,7 +69,7 @@ void RunPage::Start() {
 }
 
 void RunPage::Fail(const std::string& how) {
-  web_.Kill();  // the thread of the run does not wait until fogline-web ends
+  web_.Kill();  // instead of End(), so that the thread of the run does not wait
   state_ = State::kPausing;
   port_ = options_.port;  // another program may have taken the port that the system had chosen
   start_at_ = Clock::now() + std::min(kLongestPause, kFirstPause * (1 << std::min(failed_, 10)));

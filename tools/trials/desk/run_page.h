@@ -17,7 +17,7 @@ namespace fogline::trials {
 struct RunPageOptions {
   std::string address = "127.0.0.1";  // IPv4 in numbers, at which fogline-web listens
   std::uint16_t port = 0;             // 0: any free port; the same port for all runs, if possible
-  std::vector<std::string> traffic;   // the options --key for fogline-web
+  std::vector<std::string> traffic;   // the option --key for fogline-web, if there is a key
 };
 
 class RunPage {
@@ -48,7 +48,7 @@ class RunPage {
   void Start();
   /// Starts fogline-web, and waits until it listens. @return whether it listens @throws Interrupted
   bool Comes();
-  /// Handles a failed start. Prints a warning for the first failure in a row.
+  /// Handles a failed start. Prints a warning only for the first of several successive failures.
   void Fail(const std::string& how);
   /// Takes the addresses that fogline-web prints. @return whether it listens
   bool TakeAddresses(Duration limit);
@@ -59,15 +59,15 @@ class RunPage {
   const std::string view_token_;
   const std::string seat_token_;
   std::int64_t run_id_ = 0;
-  std::string url_;  // of the network
+  std::string url_;  // URL of the network
   Seat seat_ = Seat::kNone;
   std::string view_address_;
   std::string seat_address_;
   processes::WebChild web_;
   State state_ = State::kNoRun;
   int failed_ = 0;         // number of failed starts in a row
-  TimePoint listen_by_{};  // kStarting
-  TimePoint start_at_{};   // kPausing
+  TimePoint listen_by_{};  // in kStarting: the time limit of the start
+  TimePoint start_at_{};   // in kPausing: the time of the next start
 };
 
 }  // namespace fogline::trials

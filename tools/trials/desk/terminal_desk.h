@@ -20,8 +20,8 @@ class TerminalDesk final : public Desk {
   void Finish() override;
 
  private:
-  /// The next line of stdin, without its line feed. stdout ends with a prompt. If no line comes,
-  /// the prompt's line ends.
+  /// Reads the next line of stdin, and returns it without its line feed. The caller has printed a
+  /// prompt before. If no line comes, the function ends the line of the prompt on stdout.
   /// @throws Interrupted; std::runtime_error at the end of stdin
   std::string ReadLine();
   std::string WaitForLine();

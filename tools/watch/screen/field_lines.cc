@@ -12,8 +12,8 @@
 namespace fogline::watch {
 namespace {
 
-/// Number of characters of a text that are shown. A part of the scenario in RUN has 1,000
-/// characters.
+/// At most this many characters of a text are shown. Some texts are long: a part of the scenario in
+/// RUN has 1,000 characters.
 constexpr std::size_t kMaxText = 300;
 
 template <class V>

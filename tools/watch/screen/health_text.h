@@ -10,7 +10,7 @@ namespace fogline::watch {
 
 /// Remarks on a role, the most important one first; empty if the role has no problem. Text from the
 /// network is made safe to print.
-/// @param realtime whether the run is in real time: its roles do not wait for inputs
+/// @param realtime whether the run is in real time; the roles of such a run do not wait for inputs
 std::vector<std::string> RemarksOn(const RoleView& role, bool realtime);
 
 /// Whether the role needs the attention of a person.

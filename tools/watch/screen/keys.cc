@@ -13,7 +13,8 @@ struct Sequence {
   Key key;
 };
 
-// A terminal sends the cursor keys in one of two forms, which its mode determines.
+// A terminal sends the cursor keys in one of two forms. The mode of the terminal determines the
+// form.
 constexpr std::array kSequences{
     Sequence{"\033[A", Key::kUp},      Sequence{"\033OA", Key::kUp},
     Sequence{"\033[B", Key::kDown},    Sequence{"\033OB", Key::kDown},

@@ -29,7 +29,8 @@ class KeyReader {
   void Take(std::string_view bytes) { bytes_ += bytes; }
 
   /// The next key. Skips bytes that are not a key of this program.
-  /// @param complete whether no byte has come for a moment; a last ESC is then the key Escape
+  /// @param complete whether no byte has come for a moment. If so, an ESC at the end of the bytes
+  ///     is the key Escape; otherwise it may be the beginning of a sequence
   std::optional<Key> Next(bool complete);
 
  private:

@@ -35,7 +35,7 @@ struct TableOrder {
 };
 using TableOrders = std::array<TableOrder, kTables>;
 
-/// The columns by which a table can be sorted; the first is its natural order.
+/// The columns by which a table can be sorted. The first one stands for the natural order.
 std::vector<std::string_view> SortColumns(Table table);
 
 /// A row of a table. Rows with a key can be opened.

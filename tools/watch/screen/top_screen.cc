@@ -29,8 +29,8 @@ void TopScreen::Show(TopView view) {
 void TopScreen::Build() {
   rows_ = TopRows(view_, orders_);
   if (!used_) {
-    // Until a key is pressed, the cursor is at the first row, also if new rows come above the old
-    // first row.
+    // Until a key is pressed, the cursor stays at the first row, also if new rows come above the
+    // old first row.
     cursor_ = 0;
     return Move(0);
   }
@@ -143,13 +143,14 @@ std::string TopScreen::Footer() const {
 std::vector<Line> TopScreen::Overview(std::size_t height) {
   if (rows_.empty()) return {};
   if (cursor_ < first_) first_ = cursor_;
-  // At the first row that can be opened, the headings above this row are also visible.
+  // If the cursor is at the first row that can be opened, the headings above this row are also
+  // shown.
   const bool top =
       std::ranges::all_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(cursor_),
                           [](const TopRow& row) { return row.key.empty(); });
   if (top) first_ = 0;
   if (cursor_ >= first_ + height) first_ = cursor_ + 1 - height;
-  // At the last row that can be opened, the remarks below this row are also visible.
+  // If the cursor is at the last row that can be opened, the remarks below this row are also shown.
   const std::size_t last = rows_.size() > height ? rows_.size() - height : 0;
   const bool bottom =
       std::ranges::all_of(rows_.begin() + static_cast<std::ptrdiff_t>(cursor_) + 1, rows_.end(),

@@ -43,7 +43,7 @@ class TopScreen {
   std::size_t first_ = 0;     // the first row that is visible
   std::string opened_;        // key of the opened row; "" if no row is open
   std::size_t scrolled_ = 0;  // lines of the details that are above the window
-  std::size_t page_ = 1;      // rows of the last window
+  std::size_t page_ = 1;      // rows of the last window; a page key moves by this number
 };
 
 }  // namespace fogline::watch

@@ -19,7 +19,8 @@
 namespace fogline::watch {
 namespace {
 
-// Without packets for this long the socket renews its membership of the group, as a bus does.
+// If no packet comes for this time, the socket renews its membership of the multicast group, as a
+// bus does.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 /// @throws std::runtime_error with the reason why the socket cannot be opened
@@ -53,7 +54,8 @@ struct PacketSocket::Batch {
       parts[i] = {.iov_base = &bytes[i * packet_bytes], .iov_len = packet_bytes};
     }
   }
-  /// Makes the messages ready for the next call, which overwrites their lengths.
+  /// Prepares the message headers for a call of recvmmsg(). Each call overwrites the lengths in
+  /// them.
   mmsghdr* Ready() {
     for (std::size_t i = 0; i < kBatch; ++i) {
       msghdr& header = messages[i].msg_hdr;

@@ -47,8 +47,8 @@ class PacketSocket {
   int Receive(const std::function<void(const Packet&)>& use);
   static constexpr std::size_t kBatch = 64;
 
-  /// Renews the membership of the multicast group if no packet has come for a second, as a bus
-  /// does.
+  /// If no packet has come for a second, renews the membership of the multicast group, as a bus
+  /// does. Without membership_ there is nothing to renew.
   /// @param heard whether packets have come at `now`
   void Attend(bool heard, TimePoint now);
 

@@ -7,7 +7,8 @@ namespace fogline::watch {
 
 void SenderSequence::Add(const runtime::LcmPacket& packet, std::int64_t dropped, TimePoint now) {
   if (!begun_) {
-    // The observer may have begun in the middle of a message. So it begins at a first fragment.
+    // The observer may have begun in the middle of a message. So the sequence begins at the first
+    // fragment of a message.
     if (!packet.First()) return;
     begun_ = true;
     dropped_ = dropped;
@@ -50,8 +51,8 @@ void SenderSequence::Take(const runtime::LcmPacket& packet, TimePoint now) {
   TakeOlder(packet, age);
 }
 
-/// Whether a message of this age cannot change the counts: it has arrived, or it was sent before
-/// the first message that counts.
+/// Whether a message of this age is already known. It is known if it has arrived completely, or if
+/// it was sent before the first message that counts.
 bool SenderSequence::IsKnown(std::int64_t age) const {
   return age >= length_ || whole_[static_cast<std::size_t>(age)];
 }
@@ -66,8 +67,9 @@ void SenderSequence::Advance(const runtime::LcmPacket& packet, std::int64_t ahea
   progressed_ = now;
   Miss(incomplete ? ahead : ahead - 1);
   std::erase_if(partial_, [this](const Partial& p) { return AgeOf(p.number) >= kWindow; });
-  // Packets that this process dropped before a first fragment cannot explain a later gap. If the
-  // first fragment is missing, this process may have dropped it, so these drops still count.
+  // If the packet is a first fragment, the packets that this process dropped before it cannot
+  // explain a later gap. If the first fragment is missing, this process may have dropped it, so the
+  // dropped packets still count.
   if (packet.First()) unexplained_ = 0;
   if (!Completes(packet)) return;
   whole_[0] = true;

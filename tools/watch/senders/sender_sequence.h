@@ -13,16 +13,16 @@
 
 namespace fogline::watch {
 
-/// The numbers of one sender's messages, as its packets arrive. Numbers before the first one do not
-/// count: an observer that starts later has not lost them. The numbers have 32 bits, and begin
-/// again at 0 after the largest one.
+/// Follows the numbers of one sender's messages, as its packets arrive. Messages before the first
+/// message that the observer has seen do not count as lost, because the observer may have started
+/// after the sender. The numbers have 32 bits, and begin again at 0 after the largest one.
 class SenderSequence {
  public:
   struct Counts {
     std::int64_t received = 0;     // messages of which all fragments arrived
     std::int64_t lost = 0;         // messages that did not arrive, although a newer one did
-    std::int64_t missed_here = 0;  // did not arrive, but this process itself may have dropped them
-    std::int64_t late = 0;         // arrived after a newer one; they do not count as lost
+    std::int64_t missed_here = 0;  // did not arrive, perhaps because this process dropped them
+    std::int64_t late = 0;         // arrived after a newer one; these messages do not count as lost
     std::int64_t duplicates = 0;   // arrived again
     std::int64_t stray = 0;        // packets with an implausible number
     std::int64_t restarts = 0;     // times that the sender's numbers began again
@@ -42,16 +42,17 @@ class SenderSequence {
   /// older than the window, counts only when its successor follows. The rule and the number
   /// (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC 3550, appendix A.1). If
   /// the numbers went ahead, the numbers between count as lost. If they went back, the sender has
-  /// begun again, and no message counts as lost.
+  /// begun its numbers again, and no message counts as lost.
   static constexpr std::int64_t kMaxJump = 3000;
   /// Largest number of successive messages that can be lost. If the numbers go ahead by more, the
   /// sender has begun again, because no sender sends so many messages of which none arrives.
   static constexpr std::int64_t kMaxLost = 1'000'000;
-  /// If a known number comes after this time without a newer message, the sender may have begun
-  /// again. A successor confirms this.
+  /// If a known number comes, and no newer message has come for this time, the sender may have
+  /// begun its numbers again. The successor of this number confirms it.
   static constexpr Duration kBeginsAgain = milliseconds(1000);
-  /// The number of incomplete messages in fragments that are remembered. A sender finishes each
-  /// message before the next one, so more messages are incomplete only if packets were lost.
+  /// At most this many messages are remembered of which some fragments are missing. A sender
+  /// finishes each message before the next one, so more messages are incomplete only if packets
+  /// were lost.
   static constexpr std::size_t kMaxPartial = 4;
 
  private:
@@ -80,7 +81,7 @@ class SenderSequence {
   std::bitset<kWindow> whole_;   // bit i: message newest_ - i arrived
   std::bitset<kWindow> missed_;  // bit i: message newest_ - i counts as missed_here
   std::vector<Partial> partial_;
-  std::optional<runtime::LcmPacket> doubtful_;  // waits for its successor; its channel is not kept
+  std::optional<runtime::LcmPacket> doubtful_;  // waits for its successor; kept without its channel
   TimePoint progressed_{};                      // when newest_ grew last
   std::int64_t dropped_ = 0;                    // value of `dropped` at the last packet
   std::int64_t unexplained_ = 0;  // packets dropped here since the last gap (may explain the next)

@@ -11,7 +11,8 @@
 
 namespace fogline::watch {
 
-/// A table; empty if no sender has sent. Text from the network is made safe, as in TrafficLines().
+/// The senders as a table; empty if the view has no senders. Text from the network is made safe, as
+/// in TrafficLines().
 std::vector<Line> SenderLines(const SendersView& view);
 
 /// A text about messages that are refused because they are larger than a datagram, such as "3

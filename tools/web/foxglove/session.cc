@@ -88,7 +88,8 @@ std::string WhyNotBinary(std::string_view bytes) {
   return fmt::format("no binary frame begins with the byte {}", opcode);
 }
 
-/// Joins the errors of several entries of a request.
+/// Joins the errors of several entries of a request: the text has the first error and the number of
+/// the others.
 class Errors {
  public:
   void Add(std::string error) {

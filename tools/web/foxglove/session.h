@@ -47,7 +47,7 @@ class Session {
   /// The frame with a message for the client; nullopt if the client has not subscribed to the
   /// channel, or the bytes are not a message of the channel's type.
   /// @param time_ns when the message was received, in ns since 1970
-  /// @param message without a signature (message_signer.h)
+  /// @param message the bytes without their signature (message_signer.h)
   std::optional<Frame> Message(std::uint32_t channel, std::uint64_t time_ns, Bytes message);
 
   /// Whether the client has subscribed to any channel. If not, Message() returns nullopt.
@@ -64,7 +64,7 @@ class Session {
   std::string Unsubscribe(const nlohmann::ordered_json& request);
 
   const Channels& channels_;
-  std::map<std::uint32_t, std::uint32_t> subscriptions_;  // the client's number for each channel
+  std::map<std::uint32_t, std::uint32_t> subscriptions_;  // the subscription's id, by channel
   std::int64_t undecodable_ = 0;
 };
 

@@ -8,8 +8,9 @@
 namespace fogline::web {
 namespace {
 
-/// The index in kChannels for each index in kStepNames (kChannelOfRow), and the reverse
-/// (kRowOfChannel).
+/// kChannelOfRow converts an index in kStepNames into the index in kChannels. kRowOfChannel
+/// converts in the other direction; for a channel without a message in each step, it has
+/// kStepChannels.
 constexpr std::array<std::size_t, log::kStepChannels> kChannelOfRow = [] {
   std::array<std::size_t, log::kStepChannels> channels{};
   std::size_t row = 0;
@@ -25,8 +26,9 @@ constexpr std::array<std::size_t, kNumChannels> kRowOfChannel = [] {
   return rows;
 }();
 
-// Limit for the step of a message, relative to the number of events before it. Without this limit,
-// one forged message with a late step would need the memory of all steps before.
+// The step of a message must not exceed the number of events before this message by more than this
+// limit. Without the limit, one forged message with a late step would need the memory for all steps
+// before it.
 constexpr std::int64_t kLargestGap = 100'000;
 
 constexpr std::uint64_t kMostOffset = (1ULL << 44) - 1;
@@ -70,8 +72,9 @@ void LogIndex::Take(const log::Event& event) {
     is_signed_ = runtime::LooksSigned(event.data) &&
                  runtime::Decode(runtime::WithoutSignature(event.data), ignored);
   }
-  // The recorder writes the channels of a step in the order of the table. The next message is
-  // probably of the channel after the last found channel, so the search begins at this channel.
+  // The recorder writes the channels of a step in the order of the table. So this message is
+  // probably of the channel that follows the channel of the message before. The search begins at
+  // this probable channel.
   for (std::size_t i = 0; i < log::kStepChannels; ++i) {
     const std::size_t row = (guess_ + i) % log::kStepChannels;
     if (log::kStepNames[row] != event.channel) continue;

@@ -40,7 +40,7 @@ class LogIndex {
 
   /// The message of a step, without its signature; empty if the log lacks the message. The bytes
   /// are valid as long as the index exists.
-  /// @param channel place of the channel in kChannels
+  /// @param channel index of the channel in kChannels
   runtime::Bytes Message(std::int64_t step, std::size_t channel) const;
 
   /// Number of messages on a channel without a message in each step (Pace::kControl).

@@ -19,11 +19,11 @@
 namespace fogline::web {
 namespace {
 
-// Offset of utime in bytes. Before it a message has the fingerprint, run_id and step, of 8 bytes
-// each.
+// Offset of utime in a message, in bytes. The fingerprint, run_id and step come before it, and take
+// 8 bytes each.
 constexpr std::size_t kUtimeOffset = 24;
 
-/// The messages of a series: a channel, and with STATUS the role that has sent them.
+/// Names the messages of a series: their channel and, for STATUS, the role that has sent them.
 struct Source {
   std::size_t channel = 0;
   std::string role;  // "": any
@@ -86,7 +86,8 @@ class LoggedField {
         continue;
       }
       auto point = Of(message);
-      // If a role is started again, its time goes back. The times of a series must not go back.
+      // If a role is started again, its time goes back. The times of a series must not go back, so
+      // the time of the point before is used.
       if (!points.empty()) point->time_s = std::max(point->time_s, points.back().time_s);
       points.push_back(*point);
     }

@@ -1,5 +1,5 @@
-# cmake -DOUT=FILE -DPACKAGES=node_modules -P licences.cmake: writes the licences of the packages whose code is in
-# the page.
+# cmake -DOUT=FILE -DPACKAGES=node_modules -P licences.cmake: writes the licences of the packages
+# whose code is in the page.
 set(text "")
 foreach(package IN ITEMS uplot three)
   file(READ "${PACKAGES}/${package}/package.json" json)

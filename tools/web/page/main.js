@@ -139,7 +139,7 @@ class Page {
   }
 
   addEvent(event) {
-    const events = event.number === 0 ? [] : this.events;  // with 0 the list begins again
+    const events = event.number === 0 ? [] : this.events;  // at number 0 the list begins again
     const place = events.findLastIndex(({step}) => step <= event.step) + 1;
     this.events = events.toSpliced(place, 0, event).slice(-MOST_EVENTS);
   }
@@ -207,7 +207,7 @@ class Page {
     const isNew = run.run_id !== this.store.run?.run_id;
     this.store.setRun(run);
     say(byId("title"), run.title || "A run without a title");
-    // A narrow window does not show the whole text.
+    // The tooltip has the whole text, because a narrow window may not show it.
     setAttribute(byId("title"), "title", run.title);
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
@@ -230,7 +230,7 @@ class Page {
     const {step} = readFragment(location.hash);
     this.clock.pause();
     this.clock.time = this.store.timeOf(step ?? log.first_step);
-    this.store.frame(this.step);  // requests the messages before the curves
+    this.store.frame(this.step);  // requests its messages before the values of the curves
     this.build();
     this.showConnection("open");
   }
@@ -317,7 +317,7 @@ class Page {
     if (this.store.generation !== this.generation) this.build();
     const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
-    // The reader's time has reached the run.
+    // If the reader's time has reached the end of the live run so far, it follows the run again.
     if (this.isLive && played && this.clock.state === "paused") this.clock.follow();
     if (!this.isLive && this.waitsForFirst(now)) return;
     this.draw();

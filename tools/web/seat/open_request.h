@@ -60,8 +60,8 @@ class OpenRequest {
 
   std::optional<std::int64_t> run_id_;
   std::int64_t step_ = -1;
-  // The newest step and time at which the state was known. Before the first command they are those
-  // of the start of a run.
+  // The newest step and time at which the state was known. Before the first command, they are step
+  // -1 and time 0, as at the start of a run.
   std::int64_t state_step_ = -1;
   std::int64_t state_us_ = 0;
   std::optional<Request> request_;

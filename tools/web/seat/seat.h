@@ -37,7 +37,7 @@ class Seat {
   /// Gives the seat to a client if the seat is free. @return whether this client has the seat
   bool Sit(std::uint64_t client, TimePoint now);
   /// Takes the seat from a client that leaves.
-  /// @return a message that no person drives, if the client had the seat
+  /// @return a message that says that no person drives; nullopt if the client did not have the seat
   std::optional<driver_input_t> Leave(std::uint64_t client, TimePoint now);
 
   struct Taken {
@@ -50,7 +50,7 @@ class Seat {
   /// Takes an input. An input without a person, from a client without the seat, has no effect.
   Taken Take(std::uint64_t client, const SeatInput& input, TimePoint now);
 
-  /// A message that no person drives, if such a message is due.
+  /// A message that says that no person drives; nullopt if no such message is due.
   std::optional<driver_input_t> Look(TimePoint now);
   /// The next time at which Look() may return a message.
   TimePoint next_look() const;

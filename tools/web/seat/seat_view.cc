@@ -116,7 +116,7 @@ void SeatView::TellRun() {
   for (const auto& [id, driver] : drivers_) driver.client->Send(frame);
 }
 
-// The page gets the begin of a request before the HOST_COMMAND that asks.
+// The page gets the beginning of a request before it gets the HOST_COMMAND that asks.
 void SeatView::TellRequest(const RingMessage& message) {
   if (message.channel != IndexOf<arbitration_t>()) return;
   arbitration_t command;

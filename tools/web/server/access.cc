@@ -30,8 +30,8 @@ bool IsAddressInNumbers(const std::string& name) {
   return inet_pton(AF_INET, name.c_str(), &ignored) == 1;
 }
 
-/// Whether a browser may write this text after the scheme of an origin: "HOST" or "HOST:PORT",
-/// where HOST may be "[IPv6]" and PORT is a number from 1 to 65535.
+/// Whether this text can be an origin without its scheme, as a browser writes it: "HOST" or
+/// "HOST:PORT". HOST may be "[IPv6]", and PORT is a number from 1 to 65535.
 bool IsHostAndPort(std::string_view text) {
   std::size_t end = text.find(':');
   if (text.starts_with('[')) {
@@ -129,7 +129,7 @@ std::string DrawToken() {
 }
 
 bool IsToken(std::string_view text) {
-  constexpr std::size_t kLeast = 16;  // our choice: 64 bits, if they are hexadecimal digits
+  constexpr std::size_t kLeast = 16;  // our choice: 16 hexadecimal digits have 64 bits
   constexpr std::size_t kMost = 128;
   return text.size() >= kLeast && text.size() <= kMost && std::ranges::all_of(text, [](char c) {
            return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';

@@ -73,7 +73,7 @@ std::string DrawToken();
 /// '_'. An address can contain such a text without escapes.
 bool IsToken(std::string_view text);
 
-/// Whether two texts are equal, in a time that does not depend on where they differ.
+/// Whether two texts are equal. The time for the comparison does not depend on where they differ.
 bool EqualInConstantTime(std::string_view a, std::string_view b);
 
 /// The value of a parameter in the query of a target, such as "/ws?token=a"; "" if the parameter is

@@ -114,7 +114,7 @@ class BeastConnection final : public Connection,
   beast::tcp_stream stream_;  // until the WebSocket is opened
   beast::flat_buffer buffer_{Server::kMostFrameBytes + Server::kMostHeaderBytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  HttpAnswer answer_;  // its text must exist while it is sent
+  HttpAnswer answer_;  // its text must exist until it has been sent
   std::optional<Response> response_;
 
   std::optional<Socket> socket_;
@@ -241,7 +241,7 @@ void BeastConnection::Linger() {
 // ---- WebSocket ---------------------------------------------------------------------------------
 
 void BeastConnection::Upgrade() {
-  stream_.expires_never();  // the WebSocket has its own limits
+  stream_.expires_never();  // the WebSocket has its own time limits
   socket_.emplace(std::move(stream_));
   socket_->set_option(websocket::stream_base::timeout{.handshake_timeout = limits().request,
                                                       .idle_timeout = limits().silence,
@@ -256,7 +256,8 @@ void BeastConnection::Upgrade() {
       }));
   socket_->read_message_max(MostFrameBytes());
   socket_->auto_fragment(false);
-  // Pings and pongs count as frames. The callback runs within a read operation, so it only posts.
+  // Pings and pongs count as frames. The callback runs within a read operation, so it does not call
+  // CutOffFlood() itself, but posts the call.
   socket_->control_callback([this](websocket::frame_type kind, beast::string_view) {
     if (kind == websocket::frame_type::close || !budget_ || budget_->Take(Clock::now())) return;
     asio::post(context(), [self = shared_from_this()] { self->CutOffFlood(); });

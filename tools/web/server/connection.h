@@ -57,7 +57,7 @@ class Connection : public Client {
  private:
   Server& server_;
   const std::uint64_t id_;
-  bool has_place_ = false;  // whether it counts as a viewer
+  bool has_place_ = false;  // whether this client counts as a viewer
 };
 
 }  // namespace fogline::web

@@ -1,7 +1,8 @@
-# cmake -DOUT=FILE.cc -DDIR=FOLDER -P embed.cmake: writes Assets() of assets.h with every file of the
-# folder and of its subfolders. The assembler puts the bytes of a file into the program as they are. With them the
-# program contains its page and needs no path to it at run time. Without the folder the list is empty.
-# A program with a second page gives its function another name with -DNAME=NAME.
+# cmake -DOUT=FILE.cc -DDIR=FOLDER -P embed.cmake: writes the function Assets() of assets.h with
+# every file of the folder and of its subfolders. The assembler puts the bytes of each file
+# unchanged into the program. So the program contains its page, and needs no path to the page at run
+# time. Without the folder, the list of files is empty. A program with a second page gives the
+# function of this page another name with -DNAME=NAME.
 if(NOT NAME)
   set(NAME Assets)
 endif()

@@ -12,8 +12,8 @@ namespace fogline::web {
 class FrameBudget {
  public:
   static constexpr double kFrames = 200;
-  /// Limit for a client that drives. The seat itself refuses more than 250 inputs a second. A
-  /// client that sends twice as many ignores the answers.
+  /// Limit for a client that drives. The seat itself refuses more than 250 inputs a second, and
+  /// answers each refused input. So a client that sends twice as many ignores the answers.
   static constexpr double kSeatFrames = 500;
 
   explicit FrameBudget(TimePoint now, double frames = kFrames)

@@ -69,7 +69,7 @@ class View {
   virtual void Received(Client& client, std::string_view bytes, bool binary) = 0;
   /// Called when everything that was queued for the client has been sent.
   virtual void Idle(Client& client) = 0;
-  /// Called last for this client.
+  /// The last call for this client.
   virtual void Closed(Client& client) = 0;
 };
 
@@ -160,7 +160,7 @@ class Server {
   View& view_;
   const ServerLimits limits_;
   LineBudget lines_{"fogline-web"};
-  LineBudget frame_lines_{"fogline-web"};  // a separate limit: wrong frames hide no other lines
+  LineBudget frame_lines_{"fogline-web"};  // separate, so that wrong frames hide no other lines
   Acceptor acceptor_;
   Access access_;
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;

@@ -27,8 +27,9 @@ class FieldReader {
   std::optional<double> operator()(Bytes message) const;
 
  private:
-  /// A number of fixed bytes to skip, and then a member whose size varies or that is a length. The
-  /// member is nullptr if only the bytes are skipped.
+  /// One step of the cursor: it skips `bytes` bytes, which belong to members of fixed size, and
+  /// then `member`. The size of `member` varies, or `member` is a length. If only the bytes are
+  /// skipped, `member` is nullptr.
   struct Stride {
     std::size_t bytes = 0;
     const LcmMember* member = nullptr;

@@ -17,7 +17,7 @@ namespace {
       QuoteShort(path)));
 }
 
-/// Reads "[INDEX]" from the front of `text`.
+/// Removes "[INDEX]" from the front of `text`. @return the index
 std::size_t TakeIndex(std::string_view path, std::string_view& text) {
   std::size_t index = 0;
   const char* end = text.data() + text.size();

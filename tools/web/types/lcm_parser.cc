@@ -69,7 +69,8 @@ class Parser {
     if (Peek().kind != Kind::kWord) Fail(fmt::format("{} is missing", what));
     return Next();
   }
-  /// The name that a struct defines: such a name has no dots.
+  /// A name that the file defines, such as the name of a struct or of a member. Such a name has no
+  /// dots.
   const LcmToken& Name(std::string_view what) {
     const LcmToken& name = Word(what);
     if (name.text.find('.') != std::string::npos) Fail(fmt::format("{} has a dot", what), name);

@@ -59,7 +59,7 @@ struct LcmMember {
   std::optional<LcmPrimitive> primitive;  // nullopt: a struct
   std::size_t nested = 0;                 // place of a struct in LcmTypes::structs()
   std::vector<LcmDimension> dimensions;   // empty: a single value
-  std::string comment;                    // the lines before the member, and the comment behind it
+  std::string comment;                    // comments before the member, and behind it
   /// The number of this member among the members of the struct that are lengths, from 0 on; nullopt
   /// if the member is not the length of an array.
   std::optional<std::size_t> length_slot;

@@ -1,6 +1,6 @@
 # cmake -DOUT=FILE.cc -DLCM_FILES="a.lcm;b.lcm" -P lcm_texts.cmake: writes the definition of
-# lcm_texts.h, each file as a raw string. With it the program knows the types of its build and needs
-# no path to them at run time.
+# LcmTexts() in lcm_texts.h, with each file as a raw string. So the program knows the types of its
+# build, and needs no path to the files at run time.
 set(texts "")
 foreach(file IN LISTS LCM_FILES)
   get_filename_component(name "${file}" NAME)

@@ -18,7 +18,7 @@ double SinceFog_s(const truth_t& truth) {
   return static_cast<double>(truth.header.utime) * 1e-6 - kWarmUp_s;
 }
 
-/// One detector in one run with fog.
+/// Results of one detector in one run with fog.
 struct FogRun {
   ScoreRecords records;        // from the beginning of the fog
   std::vector<double> scores;  // in fog of at least kFogLevel

@@ -21,7 +21,8 @@ inline constexpr std::array kFalsePositives{0.001, 0.002, 0.005, 0.01, 0.02,
 /// Scores of one detector in clear air, by batch, sorted.
 using SortedBatches = std::vector<std::vector<double>>;
 
-/// The sorted scores of every detector. @param by_detector runs that have kept scores
+/// The sorted scores of every detector.
+/// @param by_detector runs whose scores were kept (ClearAirPlan::keeps_scores)
 std::vector<SortedBatches> SortScores(std::span<const std::vector<ClearRun>> by_detector);
 
 /// Means of a value over the runs of each batch. Batches are independent of each other, because

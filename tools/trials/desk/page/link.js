@@ -1,4 +1,4 @@
-// The connection of a page to its session. It connects again when it breaks.
+// The connection of a page to its session. When the connection breaks, the page connects again.
 
 const RETRY_MS = 500;
 const GOING_AWAY = 1001;  // code with which the server closes when its program ends

@@ -25,8 +25,9 @@ function scaleOf(item, index) {
   const steps = Math.round((item.max - item.min) / item.step);
   const marks = [];
   for (let i = 0; i <= steps; ++i) {
-    // Rounded to the precision of the step, so that 0.1 + 0.2 is 0.3. The last mark is exact, because a
-    // step such as 0.1428571429 divides the scale only nearly.
+    // The value is rounded to 12 digits, because in binary 0.1 + 0.2 is not exactly 0.3. The last
+    // mark is exactly the end of the scale, because a step such as 0.1428571429 only nearly divides
+    // the scale.
     const value = String(i === steps ? item.max : Number((item.min + i * item.step).toPrecision(12)));
     marks.push(make("label", {},
       make("input", {type: "radio", name: `item-${index}`, value}), value));
@@ -111,7 +112,7 @@ function goToSeat(address) {
   location.replace(seat);
 }
 
-/** The text above buttons and questions; "" before a run, where showWait() writes the text. */
+/** The text above buttons and questions; "" before a run, when showWait() writes the text. */
 function wordsOf({stage, drives}) {
   if (stage === "finished") return "Thank you. Please tell the experimenter that you are done.";
   if (stage === "asking") return "Please answer about the run that has just ended.";

@@ -4,9 +4,9 @@
 // on, and must shine from 1.3 m/s2 on (UN R13-H, 5.2.22.4).
 export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
 const STANDSTILL_MPS = 0.1;  // slower than a person walks; our choice
-const CONTRAST_AT_VISIBILITY = 0.05;  // the definition of the meteorological optical range
+const CONTRAST_AT_VISIBILITY = 0.05;  // by the definition of the meteorological optical range
 
-/** Extinction in 1/m for a visibility in m, by Koschmieder. */
+/** Extinction in 1/m for a visibility in m, by Koschmieder's law. */
 export function extinction(visibility_m) {
   return visibility_m > 0 ? -Math.log(CONTRAST_AT_VISIBILITY) / visibility_m : 0;
 }
@@ -35,8 +35,8 @@ export function carsOf(truth, ahead_s = 0) {
 }
 
 /**
- * The distance ahead of the host, in m, at which each sensor sees the preceding car; null if it
- * sees none.
+ * The distance ahead of the host, in m, at which each sensor sees the preceding car; null for a
+ * sensor that does not see it.
  */
 export function sightings({RADAR, LIDAR, TRACK}) {
   return {

@@ -1,6 +1,8 @@
-// The reader's time: follows the live run, plays, or is paused. It does not use the document.
+// The reader's time: the time of the run that the page shows. It follows the live run, plays, or is
+// paused. This file does not use the document.
 
-// Tolerance in steps: with steps of 0.1 s, 0.3 s is step 3, but 0.3 / 0.1 < 3.
+// Tolerance for rounding, in steps: with steps of 0.1 s, the time 0.3 s is step 3, but the computed
+// quotient 0.3 / 0.1 is less than 3.
 export const EARLY = 1e-6;
 
 /**

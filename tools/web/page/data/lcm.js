@@ -49,7 +49,8 @@ function readString(reader) {
 readString.least = 5;
 
 /**
- * A reader of lists. It refuses a length for which the remaining bytes of the message are too few.
+ * Makes a function that reads a list. The function refuses a length for which the message has too
+ * few remaining bytes.
  */
 function listReader(readItem, dim) {
   const readList = (reader, message) => {
@@ -129,7 +130,7 @@ export function numberAt(message, parts) {
   return typeof value === "boolean" || typeof value === "bigint" ? Number(value) : NaN;
 }
 
-/** Index tuples of a list. For a dimension of variable length they have only the first index. */
+/** The indices of a list, such as "[0][1]". A dimension of variable length has only the index 0. */
 function indices(dims) {
   return dims.reduce((tuples, dim) => tuples.flatMap((tuple) => {
     const length = typeof dim === "number" ? dim : 1;

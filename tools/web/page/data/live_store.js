@@ -101,8 +101,8 @@ export class LiveStore {
   }
 
   /**
-   * Keeps a message that does not belong to one step. Its step and time count as at least those of
-   * the message before.
+   * Keeps a message that does not belong to one step. Its step and time never go back: if they are
+   * smaller than those of the message before, the store uses the ones of that message.
    */
   keepControl(source, channel, {step, time_s}, bytes) {
     const track = this.track(source, channel);
@@ -152,7 +152,8 @@ export class LiveStore {
 
   /**
    * Whether a log of the same run is played again. An old TRUTH then comes after a silence of the
-   * whole run. A repair also brings old messages, but the processes of the run send STATUS before it.
+   * whole run. A repair also brings old messages, but the run is not silent before a repair: its
+   * processes send STATUS.
    */
   beginsAgain({name}, {step}) {
     return name === "TRUTH" && step < this.lastStep && this.wasSilent;

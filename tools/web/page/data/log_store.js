@@ -7,7 +7,7 @@ const CHUNK = 64;          // number of steps that are fetched together
 const KEEP_CHUNKS = 64;
 export const MOST_POINTS = 20000;  // of a series; the server sends up to twice as many values
 const DETAIL_POINTS = 4000;  // of a curve over a part of the log
-const KEEP_DETAILS = 48;     // number of these parts; the charts show 16 at a time
+const KEEP_DETAILS = 48;     // number of stored parts; the charts show 16 at a time
 
 export class LogStore {
   constructor(catalogue, wire) {
@@ -67,8 +67,8 @@ export class LogStore {
   }
 
   /**
-   * Fetches a chunk. One chunk is fetched at a time. Of several waiting chunks only the newest is
-   * fetched.
+   * Fetches a chunk. One chunk is fetched at a time. If several chunks wait, only the one that was
+   * wanted last is fetched.
    */
   want(number) {
     if (this.fetching === number) return;
@@ -137,7 +137,8 @@ export class LogStore {
    * The values of a field in the window between two times. A fetched part is twice as long as the
    * window, and begins at a multiple of the window's length. So a moving window seldom needs
    * another part. The next part is fetched early.
-   * @param points if there are more than twice as many values, the series has only extremes
+   * @param points if the part has more than twice this number of values, the series has only
+   * extremes
    */
   detail(channel, path, from_s, to_s, points = DETAIL_POINTS) {
     if (this.lastStep - this.firstStep < 2 * MOST_POINTS) {
@@ -146,7 +147,7 @@ export class LogStore {
     }
     const {step_s} = this.run;
     const length = Math.max(1, Math.ceil((to_s - from_s) / step_s));
-    const place = from_s / step_s / length;  // begin of the window, in lengths of the window
+    const place = from_s / step_s / length;  // beginning of the window, in lengths of the window
     const part = (begin) => this.part(channel, path, begin * length, (begin + 2) * length, points);
     if (place - Math.floor(place) > 0.5) part(Math.floor(place) + 1);
     return part(Math.floor(place));

@@ -51,8 +51,8 @@ export function modeOf(mode, lambda_human = 0) {
 }
 
 /**
- * Spans of equal value up to `end`: [{from, to, value}], from ascending times and their values.
- * `to` is the begin of the next span, or `end` for the last span.
+ * Joins successive equal values into spans up to `end`: [{from, to, value}]. The times ascend. `to`
+ * is the beginning of the next span, or `end` for the last span.
  */
 export function spansOf(times, values, end) {
   const spans = [];
@@ -68,7 +68,8 @@ export function spansOf(times, values, end) {
 
 /**
  * Spans of the side that drives, as spansOf() gives them, within [from, to]. `modes` and `lambdas`
- * are series of HOST_COMMAND.mode and HOST_COMMAND.lambda_human; they may have only the changes.
+ * are series of HOST_COMMAND.mode and HOST_COMMAND.lambda_human; the series may contain only the
+ * changes of the values.
  */
 export function sideSpans(modes, lambdas, from, to, end) {
   const [mode, lambda] = [modes.within(from, to), lambdas.within(from, to)];
@@ -126,7 +127,8 @@ export function requestAt(times, modes, time, lead_s) {
  */
 export function requestSpans(modes, from, to, end) {
   const {times, values} = modes.within(from, to);
-  // Emergency braking may have begun before `from`. The mode before it says whether a request is open.
+  // Emergency braking may have begun before `from`. The mode before the braking says whether a
+  // request is open.
   let before = times.length > 0 ? upTo(modes.times, times[0]) : -1;
   while (before >= 0 && modeOf(modes.values[before]).hides) --before;
   let open = Boolean(before >= 0 && modeOf(modes.values[before]).asks);
@@ -139,10 +141,10 @@ export function requestSpans(modes, from, to, end) {
 }
 
 /**
- * The manoeuvre at a time: {first, before}; null if there is no manoeuvre. `first` describes its
- * first mode. `before` describes the last mode before it that says which side drove; null if this
- * mode is not known, or if it asks and a collision warning has followed. `times` and `modes` as in
- * requestAt().
+ * The manoeuvre at a time: {first, before}; null if there is no manoeuvre. `first` describes the
+ * first mode of the manoeuvre. `before` describes the last mode before the manoeuvre that says
+ * which side drove. `before` is null if this mode is not known, or if it is a mode that asks and a
+ * collision warning has followed it. `times` and `modes` as in requestAt().
  */
 export function manoeuvreAt(times, modes, time) {
   let place = upTo(times, time);

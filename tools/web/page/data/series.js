@@ -2,10 +2,11 @@
 
 import {upTo} from "./modes.js";
 
-let versions = 0;  // of all series
+let versions = 0;  // number of versions of all series
 
 /**
- * Columns of values, with NaN where the series `valid` is 0. There the sensor has no value.
+ * Columns of values, with NaN where the series `valid` is 0. At these times the sensor has no
+ * value.
  */
 export function whereValid({times, values}, valid) {
   return {times, values: values.map((value, i) => valid.at(times[i]) ? value : NaN)};
@@ -61,7 +62,7 @@ export class Series {
     this.version = ++versions;
   }
 
-  /** Columns of the times in [from, to], with one more value before and one more after them. */
+  /** The times in [from, to] and their values; also one more value before and one more after. */
   within(from, to) {
     const begin = Math.max(0, upTo(this.times, from));
     const end = Math.min(this.length, upTo(this.times, to) + 2);

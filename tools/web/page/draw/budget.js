@@ -6,12 +6,16 @@
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
 const LOOK_EVERY_MS = 500;
-// Number of fast looks before the page draws more. Doubled each time that more is too slow.
+// Number of successive fast looks after which the page draws more. If drawing more is then too
+// slow, this number is doubled, up to MOST_PATIENCE.
 const CALM_LOOKS = 10;
 const MOST_PATIENCE = 320;
 const HIDDEN_MS = 1000;     // a longer time between frames means that the page was hidden
 
-/** The levels: pause between two drawings of a chart, and pixels and rate of the driver's view. */
+/**
+ * The levels. rest_ms is the pause between two drawings of a chart. The driver's view is drawn with
+ * the share `ratio` of its full resolution, and only in one of `every` frames.
+ */
 const LEVELS = [
   {rest_ms: 40, ratio: 1, every: 1},
   {rest_ms: 80, ratio: 0.75, every: 1},

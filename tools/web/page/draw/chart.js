@@ -7,7 +7,7 @@ import {upTo} from "../data/modes.js";
 
 const VALUE_AXIS_WIDTH = 52;  // equal in all charts, so that their time axes line up
 export const TOP = 8;         // space above the plot, in pixels
-const RIGHT = 28;             // space right of the plot: half of the longest label of a time
+const RIGHT = 28;             // space right of the plot, for half of the longest time label
 const SYNC = "time";          // all charts share the reader's cursor
 
 export const stepped = uPlot.paths.stepped({align: 1});
@@ -25,8 +25,8 @@ const valueTicks = (chart, ticks, axis, space, increment) =>
 const timeTicks = (chart, ticks, axis, space, increment) =>
   ticks.map((tick) => timeTick(tick, increment, decimalsOf(increment)));
 
-// Distances of the ticks of a time axis, in s: below 10 s 1, 2 or 5 times a power of ten; then 10,
-// 20 and 30 s, whole minutes, and whole hours.
+// Distances between the ticks of a time axis, in s. Below 10 s they are 1, 2 or 5 times a power of
+// ten. Then come 10, 20 and 30 s, whole minutes, and whole hours.
 const TIME_INCREMENTS = [
   ...[-4, -3, -2, -1, 0].flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`))),
   10, 20, 30, ...[1, 2, 5, 10, 20, 30].map((minutes) => 60 * minutes),
@@ -38,7 +38,7 @@ function axisOptions(theme, more) {
           gap: 5, ...more};
 }
 
-/** Smallest and largest number with a margin; the range is at least `least`. */
+/** The range [low, high], widened by a margin. Its length is at least `least`. */
 export function widened(low, high, least) {
   if (!(low <= high)) return [0, Math.max(1, least)];
   const margin = 0.06 * Math.max(high - low, least);
@@ -136,7 +136,7 @@ export function drawNow(chart, time, colour) {
   ctx.stroke();
 }
 
-/** Values for uPlot, which leaves a gap where a value is null. */
+/** Replaces NaN by null, because uPlot leaves a gap where a value is null. */
 function withGaps(values) {
   return values.some(Number.isNaN) ? Array.from(values, (v) => Number.isNaN(v) ? null : v) : values;
 }

@@ -2,9 +2,9 @@
 
 export const DASHES = [[1, 4], [12, 3, 3, 3, 3, 3], [2, 3], [8, 3, 2, 3], [4, 4], [8, 4], [], [14, 4]];
 
-// The sensors have the same colours and patterns as in the other parts of the page. So ORDER has
-// the places of the sensors last: other fields get them only if no other place is free. Before
-// these places it has those whose colours are similar to the colours of the sides that drive.
+// The sensors have the same colours and patterns as in the other parts of the page. So the places
+// of the sensors are the last ones in ORDER: other fields get them only if no other place is free.
+// Just before them are the places whose colours are similar to those of the sides that drive.
 const OWN_PLACE = {RADAR: 2, LIDAR: 3};
 const ORDER = [6, 5, 7, 4, 0, 1, 2, 3];
 

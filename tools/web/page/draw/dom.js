@@ -40,7 +40,7 @@ export function fitCanvas(canvas) {
   return {context, width, height};
 }
 
-/** A pattern of diagonal lines, so that areas differ without colour. */
+/** A pattern of diagonal lines, by which areas can be distinguished without colour. */
 export function hatch(context, colour, {both = false, size = 6} = {}) {
   const ratio = devicePixelRatio;
   const tile = document.createElement("canvas");

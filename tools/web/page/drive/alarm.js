@@ -24,7 +24,11 @@ export class Alarm {
 
   get isAllowed() { return this.context?.state === "running"; }
 
-  /** Call this in each frame. @param asks, urgent the request to take over */
+  /**
+   * Call this in each frame.
+   * @param asks whether there is a request to take over
+   * @param urgent whether the request is urgent
+   */
   sound({asks, urgent}) {
     if (!asks) {
       this.nextAt = 0;

@@ -77,7 +77,7 @@ export function calibrationOf(storage, {id, mapping}) {
     const kept = JSON.parse(storage.getItem(KEPT_UNDER + id));
     if (isComplete(kept)) return kept;
   } catch {
-    // Another program has written this entry, or the browser stores nothing.
+    // Another program may have written this entry, or the browser stores nothing.
   }
   return mapping === "standard" ? structuredClone(STANDARD) : null;
 }

@@ -18,10 +18,12 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from "./told.js";
 
-// A person waits for the next frame after each input. So this page already draws less if it misses
-// one of three frames of 60 Hz, or if inputs are late.
+// If the mean time between frames is longer than this, the page draws less. It is longer if one of
+// three frames of 60 Hz is missed. The limit is low, because a person waits for the next frame
+// after each input. The page also draws less if inputs are late.
 const SLOW_MS = 22;
-// A press within this time after the focus is the press that has given the window the keyboard.
+// If a press comes within this time after the window got the keyboard focus, it counts as the press
+// that gave the focus to the window.
 const WITH_FOCUS_MS = 500;
 const GONE_MS = 5000;  // after this time without the server, the page calls goBack()
 
@@ -71,7 +73,8 @@ class Drive {
     document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
-    // If a press comes with the focus, the person meant “Go on”, which was in this place.
+    // If the press has given the focus to the window, the person meant the button “Go on”, which
+    // was in the place of “Begin” until then.
     byId("begin").addEventListener("pointerdown", ({timeStamp}) => {
       this.isForFocus = timeStamp - this.backAt_ms < WITH_FOCUS_MS;
     });
@@ -84,7 +87,7 @@ class Drive {
       this.alarm.allow();
       this.alarm.context?.resume().then(() => this.alarm.change());
     });
-    // The person opens another program's address in this tab.
+    // Called when the person opens the address of another program in this tab.
     addEventListener("hashchange", () => {
       if (!location.hash) return;
       this.back = backOf(location.hash, location.hostname);
@@ -139,7 +142,8 @@ class Drive {
     const {key, ctrlKey, altKey, metaKey, repeat, target, timeStamp} = event;
     if (!isDriving(key) || (down && (ctrlKey || altKey || metaKey))) return;
     if (down && target.matches?.("input, select, textarea")) return;
-    // A repeated key was pressed before, perhaps when the person was away. It moves no pedal.
+    // A repeated event is of a key that was pressed before, perhaps when the person was away. It
+    // moves no pedal.
     if (!repeat && !this.person.key(key, down, timeStamp)) return;
     event.preventDefault();  // the arrows would scroll
     if (repeat) return;
@@ -154,7 +158,7 @@ class Drive {
     this.person.look(pads, now);
     this.setup.look(pads);
     const input = this.person.input(now);
-    // An input with a person asks for the seat that another page has.
+    // While another page has the seat, an input with `present` asks for the seat.
     if (this.state === "taken") input.present = this.person.whyNotReady() === "";
     for (const button of input.buttons) {
       if (!this.input?.buttons.includes(button)) this.answer.press(button, this.told, now);
@@ -230,7 +234,8 @@ class Drive {
     this.refused = state === "taken" && this.state === "taken";
     if (this.refused) this.person.set("begun", false);
     this.state = state;
-    // The server has got no input for some time, even if the page itself has noticed no pause.
+    // The server says that it got no input for some time, even if the page itself has noticed no
+    // pause.
     if (state === "lost") this.person.leavePedals();
     // A lost seat still belongs to this page: the page's next frame takes the seat again.
     this.set("seated", state === "yours" || state === "lost");

@@ -39,7 +39,10 @@ export class Newest {
     this.run = run;
   }
 
-  /** Takes a message of the network. @return its decoded form if it is new and needed, else null */
+  /**
+   * Takes a message of the network.
+   * @return {name, message} with the decoded message if it is new and needed; otherwise null
+   */
   add({channel: id, bytes}, now_ms) {
     const channel = this.catalogue.channels.get(id);
     if (!NEEDED.has(channel?.name)) return null;

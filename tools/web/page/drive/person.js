@@ -8,13 +8,13 @@ export const KEYBOARD = {id: "", kind: "keyboard", name: "Keyboard"};
 export const PEDAL_KEYS = {ArrowUp: "throttle", ArrowDown: "brake"};
 export const BUTTON_KEYS = {t: "take_over", g: "give_back"};
 
-// A button counts as down for at least this time, in which the page sends at least two messages.
-// Otherwise a short click could fall between two steps of the run.
+// A pressed button counts as down for at least this time. Otherwise a short click could fall
+// between two steps of the run. In this time the page sends at least two messages.
 const LEAST_PRESS_MS = 120;
 // Smaller changes of raw values are noise: analogue sticks at rest move less than this.
 const NOISE = 0.01;
-// After this time without a look at the devices, the server counts the page as silent
-// (Seat::kSilent), so the person was away.
+// If the page has not looked at the devices for this time, the server has counted the page as
+// silent (Seat::kSilent). So the person was away.
 const SILENT_MS = 300;
 // When a person comes back, a pedal below this share of its travel counts as released. Our choice:
 // the rest position of consumer pedals moves by 1 to 2 %, which is less. A person hardly feels 5 %.
@@ -53,7 +53,7 @@ export class Person {
     this.forgetPad();
   }
 
-  /** Forgets the state of the device, because it is unplugged or another one is chosen. */
+  /** Forgets the state of the device. Called if it is unplugged, or if another device is chosen. */
   forgetPad() {
     this.pad = null;            // newest state of the chosen gamepad; null: not connected
     this.firstAxes = [];        // values of its axes when it was connected
@@ -99,7 +99,8 @@ export class Person {
    * the key
    */
   key(key, down, now_ms) {
-    // All keys count as released when the person comes back.
+    // While the person is away, keys are ignored. When the person comes back, all keys count as
+    // released.
     if (this.whyAway() !== "") return false;
     const pedal = PEDAL_KEYS[key];
     const button = BUTTON_KEYS[key.toLowerCase()];
@@ -195,7 +196,7 @@ export class Person {
     return throttle === null || brake === null ? null : {throttle, brake};
   }
 
-  /** The values of the device: its axes, then those of the buttons that are throttle and brake. */
+  /** The values of the device: of its axes, and then of the buttons that are throttle and brake. */
   values() {
     if (!this.pad) return [];
     const buttons = PEDALS.map((pedal) => this.calibration?.[pedal])

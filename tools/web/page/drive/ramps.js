@@ -1,17 +1,18 @@
-// Arrow keys as pedals. A key is only down or up, so each pedal follows its key by a ramp. The ramp
-// begins with a jump: the movement of FIRST_S seconds. So a key moves its pedal at once, and the
-// page can send the change at once. This file does not use the document.
+// Arrow keys as pedals. A key is only down or up, so each pedal follows its key at a constant rate
+// (a ramp). The ramp begins with a jump: the pedal moves at once as far as it otherwise moves in
+// FIRST_S. So the page can send the change at once. This file does not use the document.
 
 // Rates before the page knows the scenario: the defaults of /person/key_press_ps and
 // key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// Our choice: a person does not feel that a pedal is 3 % ahead (RATES.press_ps x FIRST_S). FIRST_S
-// equals step_s of scenario/drive.json.
+// Time in s by which a pedal is ahead of its ramp. Our choice: the pedal is then 3 % of its travel
+// ahead (RATES.press_ps x FIRST_S), and a person does not feel this. FIRST_S equals step_s of
+// scenario/drive.json.
 export const FIRST_S = 0.02;
 
-// Between two looks, a held key moves its pedal for at most this time. A longer time means that the
-// page has paused. The limit is more than ten times LOOK_EVERY_MS (sender.js).
+// Between two calls of advance(), a held key moves its pedal for at most this time. If more time
+// has passed, the page has paused. The limit is more than ten times LOOK_EVERY_MS (sender.js).
 const MOST_PASSED_S = 0.1;
 
 /**

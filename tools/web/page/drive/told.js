@@ -66,10 +66,12 @@ export function told(command, truth = null, connection = "open") {
 
 /**
  * Counts down a request to take over.
- * @param request {since_s, begin_known} of the server: the time of the run at which the request
- *     began; null if the server has not said it. time_s of the run; lead_s of the scenario
+ * @param request {since_s, begin_known} from the server; null if the server has not sent it.
+ *     since_s is the time of the run at which the request began
+ * @param time_s the present time of the run
+ * @param lead_s the time for a take-over, from the scenario
  * @return {left_s, share, atMost}: the time left, and its share of lead_s. With `atMost`, less time
- *     may be left, because the begin of the request is not known
+ *     may be left, because the beginning of the request is not known
  */
 export function countdown(request, time_s, lead_s) {
   const {since_s, begin_known} = request ?? {since_s: time_s, begin_known: false};
@@ -98,7 +100,7 @@ export class Answer {
     this.pressed = null;
   }
 
-  /** @param state what told() says at this time */
+  /** @param state the result of told() at this time */
   press(button, state, now_ms) {
     const words = noEffect(button, state);
     this.pressed = words === undefined ? null : {words, side: state.side, at_ms: now_ms};

@@ -15,13 +15,13 @@ const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRU
 const MOST_FIELDS = 8;         // number of colours
 const MOST_SUGGESTIONS = 40;
 const MINUTE_S = 60;
-// Pause between drawings: `factor` times the time of the last drawing, but at most `most_ms`.
+// Pause between drawings: `factor` times as long as the last drawing took, but at most `most_ms`.
 const REST = {most_ms: 1000, factor: 5};
-const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
-const NEAR_S = 10;  // before and after a time; a longer part may come with only the extremes
+const LEAST_SPAN = 1e-3;  // least range of a value axis, as a share of the largest absolute value
+const NEAR_S = 10;  // fetched before and after a time; a longer part may have only the extremes
 const KEEP = "fogline.fields";
 const valueId = (index) => `value-of-field-${index}`;
-const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // of values, by field
+const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // names of values, by field
 
 /** The reader's last choice, if the browser has stored it. */
 function keptFields() {
@@ -104,7 +104,7 @@ export class Curves {
     this.rebuild();
   }
 
-  /** A known field, or an element of a list with another index. */
+  /** The field with this name: a known field or another element of a known list; null if none. */
   fieldNamed(name) {
     const known = this.known.find((field) => field.name === name);
     if (known) return known;
@@ -271,7 +271,8 @@ export class Curves {
   valueAt({channel, path, isStepwise}, time) {
     const series = this.seriesOf({channel, path}, ...this.range(this.moment.time));
     if (series.whole) return series.at(time);
-    // The series has only the extremes of each span.
+    // The series has only the extremes of each span. So the value comes from a short part, or from
+    // the messages of the step.
     if (!isStepwise) {
       const near = this.seriesOf({channel, path}, time - NEAR_S, time + NEAR_S);
       return near.whole ? near.at(time) : NaN;

@@ -1,6 +1,6 @@
 // The driver's view of the road ahead, with three.js. Fog reduces contrast by Koschmieder's law: at
-// the distance d a fraction exp(-sigma d) is left. The page loads this file only when it shows the
-// view.
+// the distance d, the fraction exp(-sigma d) of the contrast is left. The page loads this file only
+// when it shows the view.
 
 import {
   AmbientLight, BoxGeometry, Color, CylinderGeometry, DirectionalLight, Fog, Group, InstancedMesh,
@@ -10,7 +10,7 @@ import {
 
 import {carsOf, extinction} from "../data/cars.js";
 
-// Replaces three's own fog. That fog has another law, and uses the depth instead of the distance.
+// Replaces the fog of three.js, which has another law, and uses the depth instead of the distance.
 // `fogNear` contains sigma in 1/m. Each pixel computes its own distance, because the ground has few
 // vertices. Light adds up linearly, so the colours are made linear before they are mixed.
 const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
@@ -115,8 +115,8 @@ export class DriverView {
 
   /**
    * Draws everything once, and clears the picture. A browser compiles a shader when it first draws
-   * with the shader, and does nothing else meanwhile. Without this call, this would happen when the
-   * car ahead first brakes, and the person's pedals would have no effect for this time.
+   * with the shader, and does nothing else meanwhile. Without warmUp(), this would happen when the
+   * car ahead brakes for the first time. The person's pedals would have no effect meanwhile.
    */
   warmUp() {
     this.lead.position.z = -20;  // in sight

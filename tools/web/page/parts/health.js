@@ -74,7 +74,7 @@ function channelRow(channel, isOver) {
     cell(count(channel.undecodable)));
 }
 
-/** The run that the page shows, in the traffic; the newest run if the page knows no run. */
+/** The traffic of the run that the page shows; of the newest run if the page knows no run. */
 function shownRun(traffic, run) {
   const runs = traffic?.runs ?? [];
   return run ? runs.find(({run_id}) => run_id === run.run_id) : runs.at(-1);

@@ -6,7 +6,8 @@ import {decimal, seconds, withUnit} from "../draw/format.js";
 import {stands} from "../data/cars.js";
 import {drivingSince, manoeuvreAt, modeOf, requestAt, SIDES} from "../data/modes.js";
 
-// Without this delay, a screen reader would read each change while the reader moves through time.
+// Without this delay, a screen reader would speak each change while a person moves through the time
+// of the run.
 const ANNOUNCE_AFTER_MS = 400;
 
 const LASTS = {

@@ -10,7 +10,7 @@ const LANE_M = 3.6;
 const DASH = {length_m: 6, period_m: 18};  // the line between the lanes
 const MARGIN_M = 10;                       // shown before the first and behind the last car
 const LEAST_SPAN_M = 60;
-// The scale stays while the cars need at least 1/SLACK^2 of the width, and fit into it.
+// The scale does not change while the cars fit into the width and need at least 1/SLACK^2 of it.
 const SLACK = 1.25;
 const SCALE_BARS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500];
 const SIGHTS_HEIGHT = 52;  // height for the marks of the sensors, in pixels
@@ -172,8 +172,8 @@ function drawBrakeLamps(pen, {left, width}, lane, theme) {
 }
 
 /**
- * Draws haze over the road. At each place the haze takes 92 % of the contrast that is lost by the
- * fog between this place and the host's driver.
+ * Draws haze over the road. At each place, the opacity of the haze is 92 % of the share of the
+ * contrast that is lost in the fog between this place and the host's driver.
  */
 function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   const sigma = extinction(truth.fog_visibility_m);

@@ -63,7 +63,7 @@ export class Scene {
     this.describe(moment);
   }
 
-  /** Removes what was said about the run before. */
+  /** Removes the texts about the previous run. */
   forget() {
     this.frame = null;
     this.drawn = "";

@@ -1,4 +1,5 @@
-// The bar at the bottom: live, pause, play, step, jump to events, slider, speed, link.
+// The bar at the bottom, with the controls of the time: live, pause, play, step, jump to events,
+// slider, speed, link.
 
 import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
 import {clockTime, count, decimal, seconds, timeDecimals} from "../draw/format.js";

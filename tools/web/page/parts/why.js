@@ -152,7 +152,7 @@ export class Why {
     return Math.min(this.moment.time, this.store.lastTime);
   }
 
-  /** First and last time of the charts. In the first 20 s the charts end after the moment. */
+  /** First and last time of the charts. In the first 20 s the last time is after the moment. */
   get range() {
     const end = Math.max(this.moment.time, this.store.firstTime + WINDOW_S);
     return [end - WINDOW_S, end];
