@@ -12,8 +12,8 @@
 namespace fogline::test {
 namespace {
 
-/// Number of tests of each kind of burst: FOGLINE_TEST_BURSTS / 100, at least 1; 2 without this
-/// variable. There are 100 kinds.
+/// How often the test makes each of the 100 kinds of burst: FOGLINE_TEST_BURSTS / 100 times, but at
+/// least once. Without this variable: twice.
 std::size_t Repeats() {
   const char* bursts = std::getenv("FOGLINE_TEST_BURSTS");
   return bursts == nullptr ? 2 : static_cast<std::size_t>(std::max(1, std::atoi(bursts) / 100));

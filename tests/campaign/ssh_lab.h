@@ -30,7 +30,7 @@ class SshLab {
         << "Host lab*\n  User root\n  Port 2222\n  IdentitiesOnly yes\n  IdentityFile '"
         << folder_.File("user_key") << "'\n  UserKnownHostsFile '" << folder_.File("known_hosts")
         << "'\n  GlobalKnownHostsFile none\n  HostKeyAlias lab\n";
-    for (int i = 1; i <= machines + 1; ++i) {  // no machine has the last of these names
+    for (int i = 1; i <= machines + 1; ++i) {  // the last name belongs to no machine
       std::ofstream(folder_.File("ssh_config"), std::ios::app)
           << "Host lab" << i << "\n  HostName 10.76.67." << i << "\n";
     }

@@ -95,15 +95,15 @@ TEST_F(SumoTest, AWorldThatIsKilledTwiceComputesTheSameRun) {
   EXPECT_EQ(WatchedRun::RestartsOf(result, "world"), 2);
 }
 
-// The test stops the world again and again, as on a busy machine. There the world gets so little
-// processor time that it needs seconds to load SUMO.
+// The test stops the process of the world again and again. So the world gets little processor time,
+// as on a busy machine, and needs seconds to load SUMO.
 TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
   WatchedRun watched({}, 60, kPace, behind_a_queue_);
   const pid_t world = watched.PidOf("world");
   const TimePoint began = Clock::now();
   while (watched.StateOf("world", world) == status_t::WAITING) {
     kill(world, SIGSTOP);
-    std::this_thread::sleep_for(milliseconds(99));  // the test is about these pauses
+    std::this_thread::sleep_for(milliseconds(99));  // the world is stopped this long
     kill(world, SIGCONT);
     watched.Listen(milliseconds(1));
     ASSERT_LT(Clock::now() - began, kPatience);
@@ -194,7 +194,8 @@ TEST_F(SumoTest, AHostThatReachesTheEndOfTheRoadEndsTheRunWithThatReason) {
 }
 
 TEST_F(SumoTest, ARoadOnWhichEachLaneLeadsToTwoIsReadAtOnce) {
-  // There are 2^40 routes along the 40 edges of this road.
+  // There are 2^40 routes along the 40 edges of this road. A program that follows each route would
+  // not end.
   constexpr int kEdges = 40;
   std::ofstream nodes(folder_.File("mesh.nod.xml"));
   std::ofstream edges(folder_.File("mesh.edg.xml"));

@@ -46,12 +46,13 @@ class Reader {
   std::jthread thread_;
 };
 
-/// Notices when the machine itself stands still, such as a virtual machine whose processors are
-/// taken away. A thread on each processor sleeps 1 ms again and again. It has the highest priority,
-/// so if it wakes up late, every process on this processor was late.
+/// Notices when the machine itself stands still, for example a virtual machine whose processors are
+/// taken away. A thread on each processor sleeps 1 ms again and again. The thread has the highest
+/// priority. So if it wakes up late, every process on this processor was late.
 class StallWitness {
  public:
-  /// A shorter stall costs no deadline at 100 Hz: the roles of a run need less than the other 3 ms.
+  /// At 100 Hz a step has 10 ms, and the roles need less than 3 ms. So a shorter stall costs no
+  /// deadline.
   static constexpr Duration kStall = milliseconds(7);
 
   /// @throws std::runtime_error if this process may not have real-time priority
@@ -93,7 +94,7 @@ class StallWitness {
 
 struct Watched {
   std::int64_t missed = 0;  // deadlines
-  Duration stall{};         // the longest of the machine
+  Duration stall{};         // the longest stall of the machine
 };
 
 /// A run of 5 s at 100 Hz with 20 viewers.

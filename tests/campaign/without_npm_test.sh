@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# without_npm_test.sh: builds a copy of the tree that has no packages of npm. The programs must build
-# and run. The verbs that need a page must say what is missing.
+# without_npm_test.sh: builds a copy of the tree that has no packages of npm. The programs must
+# build and run. The verbs that need a page must say what is missing.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$(mktemp -d "${TMPDIR:-/tmp}/fogline-without-npm-XXXXXX")

@@ -1,8 +1,8 @@
-"""Prints for each folder of sources which share of its lines unit and property tests execute.
+"""Prints for each folder of sources the share of its lines that unit and property tests execute.
 
-Runs the two test programs of build-coverage/ (tools/build --coverage), and reads what the compiler's
-counters say (gcovr). Counts what the test programs link: a program's main() and its verbs are tested as
-processes, by integration tests.
+Runs the two test programs of build-coverage/ (tools/build --coverage), and reads the counters of
+the compiler with gcovr. Counts only the code that the test programs link. So it does not count
+main() and the verbs of a program: integration tests test them by starting the program.
 """
 
 import collections
@@ -16,12 +16,15 @@ BUILD = ROOT / "build-coverage"
 PROGRAMS = ["unit_tests", "property_tests"]
 SOURCES = ["common", "scenario", "services", "tools"]
 LEAST_PCT = 85
-# Code of programs. Libraries have an underscore after "fogline".
+# The build folders of programs, whose code the test programs do not link. The build folder of a
+# library has an underscore after "fogline".
 NOT_LINKED = r".*/fogline(-[a-z]+)?\.dir"
 
 
 def run_tests():
-    """Forgets the counts of earlier calls first. Ends the program if a test fails."""
+    """Deletes the counts of earlier calls, and runs the test programs.
+
+    Ends this program if a test fails."""
     for counts in BUILD.rglob("*.gcda"):
         counts.unlink()
     for program in PROGRAMS:
@@ -37,7 +40,7 @@ def run_tests():
 
 
 def executed_lines():
-    """{folder: [executed, all]} of the lines of the sources."""
+    """Returns {folder: [executed lines, all lines]} of the sources."""
     filters = [word for folder in SOURCES for word in ("--filter", f"{ROOT}/{folder}/")]
     report = subprocess.run(
         ["gcovr", "--root", ROOT, "--json", "--exclude-directories", NOT_LINKED, *filters, BUILD],
@@ -54,7 +57,7 @@ def executed_lines():
 
 
 def print_table(lines):
-    """Returns the folders below LEAST_PCT."""
+    """Prints the share of each folder. Returns the folders below LEAST_PCT."""
     below = []
     print(f"{'folder':<44}{'lines':>8}{'executed':>10}")
     for folder, (executed, count) in sorted(lines.items()):

@@ -1,5 +1,5 @@
-// The reader of a log, which a restarted recorder and a runner that resumes a run use. Input: the
-// file.
+// The code with which a restarted recorder, or a runner that resumes a run, reads the log. Input:
+// the file.
 #include <algorithm>
 #include <stdexcept>
 
@@ -66,8 +66,8 @@ void DemandAllMessages(const log::LogFront& front, const log::Remains& remains,
   }
 }
 
-/// If only the end of the log was read, the bytes before the end may have any values. So History
-/// answers for a step in these bytes with the step's messages or with a refusal.
+/// If only the end of the log was read, the bytes before the end may have any values. So for a step
+/// in these bytes, History may give the step's messages or refuse.
 void DemandMessagesOrRefusal(const log::LogFront& front, const log::Remains& remains,
                              const std::filesystem::path& file) {
   const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
@@ -113,8 +113,8 @@ void DemandUsefulRemains(runtime::Bytes bytes) {
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
     // DemandGoesOn() adds a step to the log. If the last kShortTail bytes gave the right number of
-    // steps before, they must also give it then. Otherwise DemandGoesOn() reads the last `size`
-    // bytes.
+    // steps before this, they must also give it afterwards. Otherwise DemandGoesOn() reads the last
+    // `size` bytes.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {

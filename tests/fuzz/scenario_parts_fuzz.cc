@@ -1,4 +1,4 @@
-// The joining of a scenario's parts. Input: datagrams on RUN.
+// The joining of a scenario's parts. Input: datagrams on the channel RUN.
 #include <map>
 
 #include "tests/fuzz/samples.h"

@@ -1,4 +1,4 @@
-"""The program behind tools/mutate, which has the usage."""
+"""The program that tools/mutate starts. tools/mutate prints the usage."""
 
 import argparse
 import concurrent.futures
@@ -26,14 +26,14 @@ def say(text):
 
 
 def pattern_of(tests):
-    """A regular expression of ctest for tests with these beginnings."""
-    # A suite with parameters has a name before its own, as in unit.Of/EveryBlameTest.
+    """A regular expression of ctest for the tests whose names begin with one of `tests`."""
+    # A suite with parameters has a name in front of its own name, as in unit.Of/EveryBlameTest.
     words = [re.escape(test).replace(r"\.", r"\.([A-Za-z0-9_]+/)?", 1) for test in sorted(set(tests))]
     return "^(" + "|".join(words) + ")"
 
 
 def key_of(sources, files):
-    """Changes when a file changes that a result can depend on."""
+    """A key that changes when a file on which a result can depend changes."""
     digest = hashlib.sha256()
     for name in sorted(files):
         if IRRELEVANT.search(name):
@@ -48,7 +48,7 @@ def key_of_mutation(one):
 
 
 class Results:
-    """What is known of each mutation. It is kept in a file, so that a later call goes on."""
+    """The known result of each mutation. A file keeps the results for later calls."""
 
     def __init__(self, path, key):
         self.path = path
@@ -75,7 +75,9 @@ class Results:
 
 
 def result_of(one, shop):
-    """Plants the mistake, and asks first the tests that the list names, then all others."""
+    """Puts the mistake into the copy, and runs the tests that the list names.
+
+    If all of them pass, runs all unit and property tests, too. Takes the mistake out again."""
     take_out = shop.plant(one)
     try:
         said = shop.make(one.programs)
@@ -94,7 +96,7 @@ def result_of(one, shop):
 
 
 def require_sound(chosen, shop, results):
-    """Checks that all tests pass without a mistake. Raises WorkError."""
+    """Checks that all tests pass when the code has no mistake. Raises WorkError."""
     programs = sorted({program for one in chosen for program in one.programs} | {"unit", "property"})
     say("building without a mistake")
     said = shop.make(programs)
@@ -114,7 +116,7 @@ def require_sound(chosen, shop, results):
 
 
 class Counter:
-    """Tells after each mutation how many are left."""
+    """Prints after each mutation its result, how many mutations are done, and the time left."""
 
     def __init__(self, total):
         self.total = total
@@ -137,7 +139,9 @@ class Counter:
 
 
 def work_on(todo, shops, results):
-    """Finds the result of each mutation; each workshop takes the next file's mutations."""
+    """Finds the result of each mutation.
+
+    Each workshop repeatedly takes all mutations of the next file."""
     counter = Counter(len(todo))
     by_file = {}
     for one in todo:

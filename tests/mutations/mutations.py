@@ -19,12 +19,12 @@ class ListError(Exception):
 class Mutation:
     """A mistake that a person could make in one file."""
 
-    place: str  # where the list has it, as "FILE:LINE"
+    place: str  # the line of the list at which the mutation begins, as "FILE:LINE"
     name: str = ""
     file: str = ""  # relative to the folder of the sources
     tests: list = dataclasses.field(default_factory=list)  # beginnings of names of tests
     equivalent: str = ""  # why no test can notice it; "" if a test must notice it
-    before: list = dataclasses.field(default_factory=list)  # lines
+    before: list = dataclasses.field(default_factory=list)  # lines of the source
     after: list = dataclasses.field(default_factory=list)
 
     @property
@@ -33,7 +33,7 @@ class Mutation:
         return sorted({test.split(".")[0] for test in self.tests})
 
     def apply(self, text):
-        """The text of the file with the mistake."""
+        """Returns the text of the file with the mistake in it."""
         before = "\n".join(self.before)
         count = text.count(before) if before else 0
         if count != 1:

@@ -9,8 +9,9 @@ import signal
 import subprocess
 import time
 
-# Tests that are not asked. A digest changes with every change of a run, so its test says nothing
-# about what is wrong. The others are no tests of C++ code, or programs of their own.
+# These tests do not run on mutations. A digest changes with every change of a run, so a failed test
+# of a digest does not tell what is wrong. The other tests here do not test C++ code, or are
+# separate programs.
 NOT_ASKED = (
     r"[Dd]igest|^unit\.(Python|Page)\."
     r"|^property\.(ClosedLoopAllocates|ConflictMeasuresAllocate|QpAgainst)"
@@ -82,13 +83,16 @@ class Workshop:
             raise WorkError(f"cannot configure:\n{text}")
 
     def make(self, programs):
-        """Builds test programs. Returns what the compiler says against it; "" if nothing."""
+        """Builds test programs. Returns the output of the build if it fails, otherwise ""."""
         targets = [target for program in programs for target in TARGETS[program]]
         code, text = self._run(["ninja", "-C", self.build, f"-j{self.jobs}", *targets])
         return "" if code == 0 else text
 
     def failing(self, pattern, longest):
-        """Names of failing tests among those that match; the first of them suffices."""
+        """Runs the tests that match `pattern` until a test fails.
+
+        Returns the names of the failed tests, or a text if the tests take longer than `longest` s.
+        """
         command = ["ctest", "--test-dir", self.build, "-R", pattern, "-E", NOT_ASKED, "--stop-on-failure"]
         command += ["--no-tests=error", "--parallel", str(self.jobs)]
         code, text = self._run(command, longest)
@@ -133,7 +137,7 @@ class Workshop:
 
 
 def end(process):
-    """Ends a process with all that it has started."""
+    """Ends a process together with all processes that it has started."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         try:
             os.killpg(process.pid, number)
@@ -153,7 +157,7 @@ def stop_all():
 
 
 def files_of(sources, folder):
-    """The files of the tree that git knows or could know, without those in the folder of the copies."""
+    """The files that git tracks or would track, without the files in `folder` (the copies)."""
     command = ["git", "-C", str(sources), "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     try:
         listed = subprocess.run(command, check=True, capture_output=True).stdout

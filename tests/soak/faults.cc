@@ -55,8 +55,8 @@ bool IsStopped(pid_t process) {
   return state == "T";
 }
 
-/// Stops the processes of a run. Processes that are stopped already stay so. The destructor lets
-/// the others continue.
+/// Stops the processes of a run. The destructor lets them continue. Processes that were already
+/// stopped stay stopped.
 class Held {
  public:
   explicit Held(const SoakedRun& run) {

@@ -40,8 +40,8 @@ constexpr double kLeastMinutes = 1e-9;
 constexpr double kShortestFault_s = 0.1;
 constexpr double kLongestFault_s = 60;
 
-// With --each, a kind gets at most this many further runs until a fault hits one. On a busy machine
-// a run can end before its fault begins.
+// With --each, a kind of fault gets at most this many further runs until a fault of this kind hits
+// a run. On a busy machine a run can end before its fault begins.
 constexpr int kMostFurtherRuns = 5;
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -234,7 +234,7 @@ class Soak {
 
   const Options options_;
   std::int64_t runs_ = 0;     // 0: as many as the time allows
-  bool only_missed_ = false;  // whether only kinds get runs whose faults have hit no run
+  bool only_missed_ = false;  // true: only kinds whose faults have hit no run get runs
   const SteadyClock::time_point began_ = SteadyClock::now();
   std::vector<const FaultKind*> kinds_;
   std::atomic<std::int64_t> next_;

@@ -56,11 +56,11 @@ class SoakedRun {
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
 
-  // Each of these functions causes one fault. @return false if there was no such process, or if the
-  // process had ended by itself
+  // Each of these functions causes one fault. @return whether it has caused the fault; false if
+  // there was no such process, or if the process had ended by itself
 
-  /// Ends the process of a role, drawn at random, by SIGKILL. Starts the role again if the runner
-  /// has not started it.
+  /// Ends the process of a role, drawn at random, by SIGKILL. Starts the role again if this
+  /// program, and not the runner, started it.
   bool KillARole(std::mt19937_64& random);
   /// Stops (SIGSTOP) the process of a role that the runner has started. The role is drawn at
   /// random.

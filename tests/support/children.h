@@ -15,8 +15,8 @@
 
 namespace fogline::test {
 
-/// The children of `parent` that have not ended, and that the main thread of `parent` has started.
-/// In Fogline the main thread starts all children, except those of several runs at once.
+/// The children of `parent` that its main thread has started, and that have not ended. In Fogline,
+/// other threads start children only when several runs go on at once.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   const std::string id = std::to_string(parent);
   std::ifstream in("/proc/" + id + "/task/" + id + "/children");
@@ -27,7 +27,7 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   return children;
 }
 
-/// The children of `parent` that have not ended, and that any thread of `parent` has started.
+/// The children of `parent` that any of its threads has started, and that have not ended.
 inline std::vector<pid_t> ChildrenOfAnyThread(pid_t parent) {
   std::vector<pid_t> children;
   std::error_code ended;

@@ -62,8 +62,9 @@ struct Outcome {
   std::string err;
 };
 
-/// Executes a command until its output has all these texts, because on a busy machine it may miss
-/// them. @return the last outcome; after kPatience it may lack a text
+/// Executes a command again and again until its stdout contains all `texts`. On a busy machine a
+/// single execution may not print all of them. @return the last outcome; after kPatience it may
+/// lack a text
 Outcome RunUntilItPrints(const std::vector<std::string>& command,
                          const std::vector<std::string>& texts);
 
@@ -84,7 +85,8 @@ Outcome RunCommand(const std::vector<std::string>& command, std::chrono::seconds
 /// Whether a process with this id exists (a zombie does not count).
 bool IsAlive(pid_t pid);
 
-/// The process id after "NAME " in "processes: world 4711, radar 4712". 0 if the name is missing.
+/// The process id of a role in a text such as "processes: world 4711, radar 4712"; 0 if the text
+/// does not contain the role.
 pid_t PidOf(const std::string& err, const std::string& role);
 
 /// An empty folder below Testing/tmp in the build folder. The destructor removes the folder;

@@ -1,4 +1,4 @@
-// Copies of logs with changes.
+// Copies a log with changes.
 #pragma once
 
 #include <cstdint>

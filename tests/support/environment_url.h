@@ -1,4 +1,4 @@
-// LCM_DEFAULT_URL in a test of code that reads it.
+// Sets and unsets LCM_DEFAULT_URL for a test of code that reads this variable.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// The texts of errors for bad input, in tests.
+// The text of an error that a call throws, for tests.
 #pragma once
 
 #include <string>

@@ -34,7 +34,8 @@ std::string PathOf(int fd) {
   return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd);
 }
 
-/// The number in nft's "packets 12 bytes 345".
+/// The number of packets in a counter of nft, such as 12 in "packets 12 bytes 345"; -1 if there is
+/// no such number.
 std::int64_t Counted(const std::string& counter) {
   const std::size_t at = counter.find("packets ");
   return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));

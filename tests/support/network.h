@@ -46,8 +46,8 @@ class Machine {
 
   /// Routes the multicast of this machine to its own loopback device.
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
-  /// From now on the kernel loses `per_cent` % of the UDP datagrams that arrive at this machine,
-  /// also of those that this machine sends to itself.
+  /// From now on the kernel loses `per_cent` % of the UDP datagrams that arrive at this machine.
+  /// This includes the datagrams that this machine sends to itself.
   void LoseUdp(int per_cent) const;
   /// From now on the kernel loses the datagrams of one LCM channel.
   void LoseChannel(const std::string& channel) const;

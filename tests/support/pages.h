@@ -18,11 +18,12 @@ struct Block {
   std::string text;  // each line ends with \n; without fence or indentation
 };
 
-/// The blocks of a page in its order. Fences of other kinds, such as C++, are left out.
+/// The blocks of a page, in their order on the page. Fences of other kinds, such as C++, are left
+/// out.
 inline std::vector<Block> BlocksOf(const std::string& page) {
   std::vector<Block> blocks;
   std::istringstream lines(page);
-  std::string fence;      // the kind of the open fence with its ticks, "" outside of a fence
+  std::string fence;      // first line of the open fence, such as "```sh"; "" outside of a fence
   bool indented = false;  // whether the line before belongs to an indented block
   for (std::string line; std::getline(lines, line);) {
     if (!fence.empty()) {

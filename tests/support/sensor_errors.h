@@ -1,6 +1,6 @@
-// Checks of a sensor's random errors over many seeds and steps. Each bound excludes one case in a
-// million. It is a quantile of the exact distribution, or, in ExpectUniform(), of a distribution
-// that is exact only for many samples.
+// Checks of a sensor's random errors over many seeds and steps. A correct sensor exceeds a bound in
+// one of a million cases. A bound is a quantile of the exact distribution. Only ExpectUniform()
+// uses a distribution that is approximate, and needs many samples.
 #pragma once
 
 #include <cmath>

@@ -119,8 +119,8 @@ const std::vector<Room> kRooms = WithRoles({
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });
 
-/// The room of services has only the files directly in this folder. A new subfolder needs a line of
-/// its own in kRooms.
+/// The room "services" has only the files directly in this folder. So a new subfolder of it needs a
+/// line of its own in kRooms.
 constexpr std::string_view kAlone = "services";
 
 /// The only role that uses another role: a following car may have the host's ACC.
@@ -245,8 +245,8 @@ TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoi
                           "services/decision/policies/policies.cc", "tools/fogline/report.cc"));
 }
 
-/// The positions of a library's folders in the order. A folder without a room comes after all
-/// rooms.
+/// The positions of a library's folders in the order of the rooms (kRooms). A folder without a room
+/// comes after all rooms.
 std::set<std::size_t> PlacesOf(const std::string& folders) {
   std::set<std::size_t> places;
   std::istringstream in(folders);

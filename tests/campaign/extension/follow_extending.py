@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Adds the role of docs/extending.md to a copy of the tree, as the page says it, and runs it.
+"""Adds the role of docs/extending.md to a copy of the tree, as the page says, and runs the role.
 
 usage: follow_extending.py SOURCE_DIR FOGLINE [FOLDER]
 
-SOURCE_DIR is the tree, FOGLINE its program, and FOLDER a folder for the copy (default: a temporary one). The test writes
-the files that the page shows, makes the changes that the page shows, and executes the commands of the page. It makes no
-other change. Then it checks what the page promises.
+SOURCE_DIR is the tree, FOGLINE is its program, and FOLDER is the folder for the copy (default: a
+temporary folder). The test writes the files that the page shows, makes the changes that the page
+shows, and executes the commands of the page. It makes no other change. Then it checks what the
+page promises.
 """
 
 import csv
@@ -22,7 +23,7 @@ LEFT_OUT = {".git", "build", "node_modules", "logs"}
 
 
 def blocks(page):
-    """(text since the block before, kind, content) of each fenced block of the section."""
+    """Returns (text since the previous block, kind, content) for each fenced block of SECTION."""
     section = page[page.index(SECTION):]
     found = re.split(r"^```(\w+)\n(.*?)^```\n", section, flags=re.MULTILINE | re.DOTALL)
     return list(zip(found[0::3], found[1::3], found[2::3]))
@@ -69,7 +70,9 @@ def copy_tree(source, tree):
 
 
 def follow(page, tree):
-    """Does what the page says. @return what the commands print, and the files that the page shows whole"""
+    """Does what the page says.
+
+    @return what the commands print, and the files that the page shows as a whole"""
     printed, written, file = [], {}, None
     for text, kind, content in blocks(page):
         named = [name for name in re.findall(r"`([\w./]+\.\w+)`", text) if "/" in name]
@@ -96,11 +99,14 @@ def check(tree, printed, written):
     assert "`fogline-thermal`" in graph and "| THERMAL |" in graph
     assert graph in (tree / "docs/architecture.md").read_text()
     assert graph.split("\n\n")[0] in (tree / "README.md").read_text()
-    # All transports have one digest, and the program computes the camera again from a log.
+    # All transports give the same digest. `fogline replay` computes the thermal camera again from a
+    # log.
     digests = re.findall(r"\b[0-9a-f]{64}\b", printed[-1])
-    assert len(digests) == 4 + 4 and len(set(digests)) == 1, printed[-1]  # of the runs, and of their logs
+    # 4 of them are of the runs, and 4 are of the logs of the runs.
+    assert len(digests) == 4 + 4 and len(set(digests)) == 1, printed[-1]
     assert re.search(r"^thermal +same: 500 steps$", printed[-1], re.MULTILINE), printed[-1]
-    # The metrics do not depend on a channel that no other role reads.
+    # `fogline metrics` reads a log with the new channel, and `fogline export` writes the channel's
+    # messages.
     assert "logs/direct.lcm" in printed[-1]
     with open(tree / "logs/direct/THERMAL.csv", newline="") as text:
         rows = list(csv.DictReader(text))
@@ -111,7 +117,10 @@ def check(tree, printed, written):
 
 
 def check_order(tree):
-    """The compiler refuses a row above the rows that the role reads, and a channel out of the order."""
+    """Checks two wrong orders, which the compiler must refuse.
+
+    In one, the role's row is above the row of a role whose message it reads. In the other, the
+    channel is not in the order of the roles."""
     graph = (tree / "services/graph.h").read_text()
     row = re.search(r"  ROLE\(thermal,.*\n", graph).group()
     lidar = graph.index("  ROLE(lidar,")

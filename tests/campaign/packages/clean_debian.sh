@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# clean_debian.sh BUILD [MIRROR]: makes the packages of a build, installs them in a minimal Debian 12,
-# makes the paper's run there as an ordinary user, from Python too, reads manual, completion and unit,
-# and removes the packages again. Needs root and debootstrap. Exit codes: 0 all is well, 1 something is not, 4 this
-# machine cannot make a Debian system.
+# clean_debian.sh BUILD [MIRROR]: makes the packages of a build, and installs them in a minimal
+# Debian 12. Makes the paper's run there as an ordinary user, also from Python. Checks the manual,
+# the completion and the systemd unit. Then it removes the packages. Needs root and debootstrap.
+# Exit codes: 0 if everything is correct, 1 if something is wrong, 4 if this machine cannot make a
+# Debian system.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 build=$(realpath "$1")
@@ -24,7 +25,8 @@ rm "$tree.log"
 make_debian "$mirror" ca-certificates >/dev/null
 trust_own_certificates >/dev/null
 
-# The manual is left out of a minimal Debian system, unless dpkg is told otherwise.
+# Files in this folder could make dpkg leave out the manual pages, as in many minimal Debian
+# systems.
 rm -f "$tree"/etc/dpkg/dpkg.cfg.d/*
 install="apt-get install -qq -y --no-install-recommends"
 inside / "set -e; export DEBIAN_FRONTEND=noninteractive; apt-get update -qq

@@ -23,7 +23,7 @@ constexpr const char* kPrompt = "ready> ";
 
 void PrintTo(const Shell& shell, std::ostream* out) { *out << shell.name; }
 
-/// A command line before the tab key, and its last word after it.
+/// A command line that a person types, and its last word after the tab key was pressed.
 struct Case {
   std::string typed;
   std::string word;

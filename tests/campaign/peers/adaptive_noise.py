@@ -1,9 +1,10 @@
-"""Computes the fusion of a run again, with noise that adapts, and compares each step with TRACK.
+"""Computes the fusion of a run again, with adaptive noise, and compares each step with TRACK.
 
     adaptive_noise.py build/bin/fogline scenario/dense_fog.json
 
-A Kalman filter in information form: the inverse of the covariance is the sum of the information of prediction
-and value. So it shares no formula of the gain with Fogline. Sensors must look along the lane.
+This script has a Kalman filter in information form: it adds the information (the inverse of the
+covariance) of the prediction and of the measured value. So it does not use Fogline's formula of
+the gain. The sensors must have no lateral offsets.
 """
 
 import statistics
@@ -47,7 +48,9 @@ def inverse(m):
 
 
 class Filter:
-    """State [distance, relative speed, acceleration of the car ahead]; values 0 to 2 as in TRACK."""
+    """The state is [distance, relative speed, acceleration of the car ahead].
+
+    The values 0 to 2 are those of TRACK."""
 
     def __init__(self, scenario):
         fusion = scenario["fusion"]

@@ -1,8 +1,9 @@
-"""Computes from the messages of a run when host and following cars brake in an emergency, and compares.
+"""Computes from the messages of a run when the host and the following cars brake in an emergency,
+and compares the result with the run.
 
     emergency_braking.py build/bin/fogline scenario/dense_fog.json
 
-The host has its fused track; the following cars, which have ACCs here, have the truth.
+The host uses its fused track. The following cars have ACCs here, and use the truth.
 """
 
 import sys
@@ -93,7 +94,7 @@ def compare_followers(run, differences):
             applied = command[f"acceleration_mps2.{car}"]
             differences.expect((applied <= -section["deceleration_mps2"]) == brakes,
                                f"step {k}, car {car}: {applied} m/s2, peer {'brakes' if brakes else 'does not'}")
-            # After an emergency the controller releases the brake gradually.
+            # After an emergency braking the controller releases the brake gradually.
             differences.expect(brakes or applied >= min(hardest, before) - 1e-9, f"step {k}, car {car}: {applied} m/s2")
             before = applied
     return braked

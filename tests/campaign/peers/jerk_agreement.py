@@ -2,8 +2,8 @@
 
     jerk_agreement.py build/bin/fogline tests/campaign/peers/jerk.m scenario/paper.json scenario/dense_fog.json
 
-The script reads only what `fogline export` writes. The cases have several lengths of a step, and one of them
-does not divide a second.
+The script reads only what `fogline export` writes. The cases have different lengths of a step. For
+one of these lengths, a second is not a whole number of steps.
 """
 
 import json

@@ -1,8 +1,10 @@
-"""Counts the modes of the LiDAR under fog model `modes`, and compares with the probabilities of the scenario.
+"""Counts the modes of the LiDAR under fog model `modes`, and compares with the scenario's
+probabilities.
 
     missing_echoes.py build/bin/fogline scenario/dense_fog.json
 
-The gap sways from 21 to 45 m. The filter trusts the LiDAR so little that the host does not react to it.
+The gap varies between 21 m and 45 m. The filter trusts the LiDAR so little that the host does not
+react to the LiDAR.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""Checks that Fogline's table and the Octave script's table agree for a scenario without sensor noise.
+"""Checks that Fogline's table agrees with the Octave script's table, without sensor noise.
 
     table_agreement.py build/bin/fogline tests/campaign/peers/paper.m scenario/paper.json
 

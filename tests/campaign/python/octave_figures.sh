@@ -23,12 +23,13 @@ draw() {
 draw "{'with.mat', 'without.mat'}" both
 draw "'with.mat'" one
 
-# Each curve of gnuplot is a path with hundreds of points. A legend has a text for each curve.
+# Octave draws with gnuplot, which makes each curve a path with hundreds of points. A legend has a
+# text for each curve.
 for figure in speeds gaps conflict accelerations; do
   for kind in both one; do
     curves=$(tr -d '\n' <$kind/$figure.svg | grep -oE "<path[^>]* d='M[^']{1500,}'" | wc -l)
     echo "$kind/$figure.svg: $curves curves"
-    # gaps has two curves for each run, the others have three.
+    # The figure gaps has two curves for each run. The other figures have three.
     wanted=$([ $figure = gaps ] && echo 2 || echo 3)
     [ "$curves" -ge $([ $kind = both ] && echo $((2 * wanted)) || echo "$wanted") ] || exit 1
   done

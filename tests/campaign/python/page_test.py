@@ -23,11 +23,12 @@ class PageTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out):
             os.symlink(SOURCES / "scenario", pathlib.Path(folder, "scenario"))
             os.chdir(folder)
-            # The blocks follow no other run of this machine.
+            # The blocks use a network of their own, so they do not follow another run of this
+            # machine.
             port = 20_000 + os.getpid() % 9_000
             os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{port}?ttl=0"
             for block in blocks:
-                if "fl.serve(" not in block:  # PythonRoleTest starts that program
+                if "fl.serve(" not in block:  # PythonRoleTest runs this block
                     exec(compile(block, "docs/python.md", "exec"), names)
         text = out.getvalue()
         self.assertIn("29 ", text, "the last step of the live run")

@@ -1,5 +1,5 @@
-"""The tables of a log have every number of `fogline export`, even if the log has gaps, and they are
-read fast enough. `fl.table` and `fl.sweep` have the numbers of the program."""
+"""The tables of a log have every number of `fogline export`, even if the log has gaps. The tables
+are read fast enough. `fl.table` and `fl.sweep` have the numbers of the program."""
 
 import json
 import os

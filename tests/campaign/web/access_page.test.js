@@ -20,7 +20,8 @@ test("a page without the key says what is missing", async (t) => {
   const address = await view(t, [log, "--listen", "127.0.0.1"]);
   const page = await open(t, await browser(t), address.replace(/#.*/, ""));
   await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a token"));
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
+  // The page's errors about the refused connection are expected.
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));
 });
 
 test("the new address of a server that was started again works in the same tab", async (t) => {
@@ -31,7 +32,7 @@ test("the new address of a server that was started again works in the same tab",
   const state = (wanted) => page.waitForFunction(
     (name) => document.getElementById("origin").dataset.state === name, wanted);
   await state("log");
-  await page.waitForFunction(() => foglinePage.scene.view);  // its file is loaded last
+  await page.waitForFunction(() => foglinePage.scene.view);  // this view is loaded last
   server.kill("SIGINT");
   await server.ended;
   await page.waitForFunction(() => document.getElementById("origin-words").textContent === "The program has ended");
@@ -44,5 +45,6 @@ test("the new address of a server that was started again works in the same tab",
   assert.ok(!page.url().includes("token"), page.url());
   await page.reload();
   await shows(page, 0);
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // without a server
+  // The page's errors from the time without a server are expected.
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));
 });

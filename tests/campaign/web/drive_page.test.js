@@ -48,7 +48,7 @@ test("the arrows are the pedals, T and G the buttons", async (t) => {
 });
 
 test("a view counts the page of the seat, and names a command that starts a run on its network", async (t) => {
-  const {view, started} = await seated(t);  // its listener is a viewer, too
+  const {view, started} = await seated(t);  // the listener in seated() is a viewer, too
   const page = await open(t, started, view);
   await page.waitForFunction(() =>
     document.getElementById("network").textContent.includes("2 viewers · 1 page of the seat"));
@@ -160,7 +160,8 @@ test("a hidden tab does not drive", async (t) => {
 test("a window without the keyboard does not drive, and comes back with released pedals", async (t) => {
   const {page, run} = await leaves(t, ({page: one}) => one.evaluate(() => { dispatchEvent(new Event("blur")); }),
                                    "Another window");
-  // The press that gives the window the keyboard hits the button that then has the place of “Go on”.
+  // A person presses “Go on”. First the window gets the keyboard, and then another button is at the
+  // place of “Go on”. So the press hits this other button.
   const pressed = await page.evaluate(() => {
     const {left, top, width, height} = document.getElementById("go-on").getBoundingClientRect();
     dispatchEvent(new Event("focus"));
@@ -170,12 +171,12 @@ test("a window without the keyboard does not drive, and comes back with released
     return button.id;
   });
   assert.equal(pressed, "begin");
-  assert.equal(await page.locator("#begin").innerText(), "Leave the seat");  // it did nothing
+  assert.equal(await page.locator("#begin").innerText(), "Leave the seat");  // nothing happened
   const back = await run.next(({present}) => present, "that the person is back");
   assert.equal(back.message.brake, 0);
   const from_ms = await page.evaluate(() => performance.now());
   await page.waitForFunction((from) => performance.now() > from + 600, from_ms);
-  await page.click("#begin");  // a press of its own
+  await page.click("#begin");  // a separate click
   await page.waitForFunction(() => document.getElementById("begin").innerText !== "Leave the seat");
 });
 
@@ -189,7 +190,8 @@ test("a page that is busy for 300 ms does not drive, and is told", async (t) => 
     while (performance.now() < end) continue;
   }));
   await until(() => server.said.includes("its page is silent"), "the notice of the silence");
-  // Its next input takes the seat again, with released pedals although the key is still down.
+  // The page's next input takes the seat again, with released pedals although the key is still
+  // down.
   await drives(page, true);
   const back = await run.next(({present}) => present, "that the person is back");
   assert.equal(back.message.brake, 0);
@@ -244,8 +246,9 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   assert.ok(!page.url().includes("token"), page.url());
   const wrong = await open(t, started, drive.replace(/#.*/, new URL(view).hash));
   await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a token"));
-  await wrong.close();  // otherwise it tries again
-  wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
+  await wrong.close();  // otherwise it would try again to connect
+  // The page's errors about the refused connection are expected.
+  wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));
 });
 
 for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE], ["low", {width: 1000, height: 760}]]) {
@@ -271,7 +274,8 @@ test("a finger holds the pedals of the page", async (t) => {
   await begin(page);
   await drives(page, true);
   const finger = (id, type) => page.locator(id).dispatchEvent(type, {pointerId: 1, pointerType: "touch"});
-  await page.evaluate(() => { Element.prototype.setPointerCapture = () => {}; });  // of a pointer that does not exist
+  // The pointer of these events does not exist, so it cannot be captured.
+  await page.evaluate(() => { Element.prototype.setPointerCapture = () => {}; });
   assert.ok(await page.locator("#touch-brake").isVisible());
   await finger("#touch-brake", "pointerdown");
   await run.next(({brake}) => brake === 1, "the brake");

@@ -22,8 +22,8 @@ const TAKE_OVER_PEDAL = "0.1";  // the default of /person/take_over_pedal
 // Scheduling allowance: the time for which the machine may delay the messages of page and driver.
 const ALLOWANCE_S = 0.25;
 
-// The story of scenario/drive.json in 30 s. The fog lasts from 3 s to 18 s, and the car ahead
-// brakes at 12 s.
+// The events of scenario/drive.json, shortened to 30 s. The fog lasts from 3 s to 18 s, and the car
+// ahead brakes at 12 s.
 const STORY = {
   "/steps": 1500, "/fog/start_s": 3, "/fog/duration_s": 15,
   "/lead/breakpoints": [{duration_s: 12, speed_mps: 20}, {duration_s: 3, speed_mps: 12},
@@ -50,8 +50,8 @@ const says = (page, words) => page.waitForFunction(
   (wanted) => document.getElementById("who").textContent.startsWith(wanted), words);
 
 /**
- * Follows the car ahead with a time gap while the human drives. The script takes the values from
- * the newest message of the page, which shows them to a person, and acts every 40 ms.
+ * Follows the car ahead with a time gap while the human drives. The script acts every 40 ms. It
+ * takes its values from the newest message of the page. The page shows a person the same message.
  */
 async function follow(page, run, pedals, until_s) {
   for (;;) {
@@ -110,7 +110,7 @@ function messagesOf(log, channel, type) {
   return readEvents(log).filter((event) => event.channel === channel).map(({bytes}) => decode(bytes));
 }
 
-/** The delays in a log without repeated values, in us. */
+/** The delays in a log, in us. Equal values that follow each other count once. */
 function latenciesOf(inputs) {
   const values = inputs.map(({latency_us}) => Number(latency_us)).filter((value) => value >= 0);
   return values.filter((value, i) => value !== values[i - 1]);
@@ -177,7 +177,8 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     assert.equal(run.code, 0, run.said);
     const {measured, count} = await page.evaluate(() => ({
       measured: foglineDrive.latency.values.map((ms) => Math.trunc(1000 * ms)), count: foglineDrive.latency.count}));
-    page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // after the end of the run
+    // The page's errors after the end of the run are expected.
+    page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));
 
     const truth = messagesOf(log, "TRUTH", "truth_t");
     assert.ok(Math.min(...truth.map(({host_gap_m}) => host_gap_m)) > 2, "no collision");
@@ -211,8 +212,8 @@ async function pressThrottle(page, isWheel) {
 }
 
 /**
- * Checks in the log that the driver is not ready in time after the last input of the person, and
- * that the pedals are released from then on.
+ * Checks in the log that the driver's readiness becomes 0 soon enough after the last input of the
+ * person, and that the pedals are released from then on.
  * @param from the step in which the person has begun to drive
  */
 function assertReleased(log, from) {
@@ -232,7 +233,7 @@ function assertReleased(log, from) {
 
 /**
  * The person drives. Then `happens` is called, and the run must notice that no person is present.
- * `then` looks at the page while the car stops.
+ * `then` is called while the car stops, and checks the page.
  */
 async function leavesTheCar(t, happens, {isWheel = false, then = null} = {}) {
   const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600},
@@ -315,7 +316,8 @@ test("the first brake lights of the car ahead need no new shader, for which the 
   await begin(page);
   await page.waitForFunction(() => foglineDrive.newest?.frame.TRUTH?.preceding_acceleration_mps2 < -1);
   const after = await page.evaluate(async () => {
-    for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);  // a slow machine draws one in three
+    // Ten frames, because a slow machine draws only every third frame.
+    for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);
     return window.shaders;
   });
   assert.equal(after, before);
@@ -361,5 +363,6 @@ test("the page warns while the picture follows the inputs too late, and not long
   assert.match(await warning.innerText(), /more than 100 ms/);
   await page.evaluate(() => { window.late_ms = 0; });
   await shows((delay_ms) => delay_ms <= 100, false);
-  page.trouble = page.trouble.filter((words) => !words.includes("ERR_FAILED"));  // of the picture
+  // The page's error about the picture, which was not loaded, is expected.
+  page.trouble = page.trouble.filter((words) => !words.includes("ERR_FAILED"));
 });

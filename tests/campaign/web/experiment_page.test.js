@@ -20,13 +20,14 @@ const PARTICIPANTS = 4;
 const CONDITIONS = {"secret-short": 10, "secret-middle": 14, "secret-long": 18};  // lead_s
 const KILLED = {participant: 2, trial: 2};
 const PRACTICE = 0;  // number of the practice run
-const BREAK_S = 5;   // after the first trial
+const BREAK_S = 5;   // the break after the first trial
 const MARKER = "looks away, \"tired\", m\u00fcde";
 const SCALES = ["mental_demand", "physical_demand", "temporal_demand", "performance", "effort", "frustration"];
 
 /**
- * Writes the file of the experiment. In each run the person is asked from the first step on. If a
- * busy machine sends no input for so long that the deadman acts, the person may take over again.
+ * Writes the file of the experiment. Each run asks the person to take over from the first step on.
+ * If a busy machine sends no input for so long that the deadman acts, the person may take over
+ * again.
  */
 function writePlan(folder) {
   const file = path.join(folder, "experiment.json");
@@ -217,7 +218,7 @@ function messagesIn(log, wanted, type) {
   return readEvents(log).filter(({channel}) => channel === wanted).map(({bytes}) => decode(bytes));
 }
 
-/** The instances of the seat in a log, if its person was present. */
+/** The instances of the seat in a log: those that sent inputs of a present person. */
 const seatsIn = (log) => new Set(messagesIn(log, "DRIVER_INPUT", "driver_input_t")
   .filter(({present}) => present).map(({instance}) => String(instance)));
 
@@ -236,7 +237,7 @@ function measuresOf(log) {
     ...named("first_request_", run.take_overs[0]), ...named("input_latency_", run.input_latency)]);
 }
 
-/** The row has the measures of its log, and the long table has the same values. */
+/** Checks that the row has the measures of its log, and that the long table has the same values. */
 function assertMeasures(row, log, values) {
   const measures = measuresOf(log);
   for (const [name, value] of Object.entries(measures)) {
@@ -250,7 +251,7 @@ function assertMeasures(row, log, values) {
   assert.deepEqual(metrics.map(({item, value}) => [item, value]), known.map((name) => [name, row[name]]));
 }
 
-/** The long table has each answer that the script has typed, and the marker of the experimenter. */
+/** Checks that the long table has each typed answer, and the marker of the experimenter. */
 function assertAnswersAndMarker(values) {
   const typed = {};
   for (let participant = 1; participant <= PARTICIPANTS; ++participant) {

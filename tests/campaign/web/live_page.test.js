@@ -132,7 +132,7 @@ test("a page that has forgotten the begin of a long run says where its data begi
   run(t, network, "--pace", "100", "--set", "/step_s=0.5", "--set", "/steps=1900");  // 950 s; the page keeps 600 s
   await page.waitForFunction(() => document.body.dataset.step === "1899");
   await page.waitForFunction(() => /The data begin at \d+\.\d/.test(document.getElementById("curves-at").textContent));
-  await page.locator("#events button").first().click();  // of an event that the page has forgotten
+  await page.locator("#events button").first().click();  // the page has forgotten this event
   await page.waitForFunction(() => /^The data begin at step \d+\.$/.test(document.getElementById("note").textContent));
 });
 

@@ -88,7 +88,8 @@ test("the numbers of a log of 60,000 steps are those of its steps", async (t) =>
       }, [`value-${key}`, error]);
     }
   }
-  // The curves over the whole time have only extremes. The values at the cursor are those of its step.
+  // The curves over the whole time have only the extremes of each span. The value at the cursor
+  // must still be the value of the cursor's step.
   await page.locator("#charts .u-over").first().hover({position: {x: 333, y: 40}});
   await page.waitForFunction(() => foglinePage.curves.hover !== null);
   const step = await page.evaluate(() => Math.floor(foglinePage.curves.hover / 0.1 + 1e-6));
@@ -254,7 +255,7 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
 });
 
 test("Why shows nothing that is later than the shown moment", async (t) => {
-  // A period in whole microseconds of which not every multiple is exact: 3 * 0.3 < 0.9.
+  // 0.3 s is a whole number of microseconds, but its multiples are not all exact: 3 * 0.3 < 0.9.
   for (const step_s of [0.1, 0.3]) {
     const folder = scratch(t);
     const log = recordedRun(folder, [`/step_s=${step_s}`]);

@@ -7,8 +7,8 @@ import {fileURLToPath} from "node:url";
 import {breaches} from "./window.js";
 
 const IN_PAGE = fileURLToPath(new URL("looks_in_page.js", import.meta.url));
-// Sizes of a desk, of a part of a desk, of a phone, and of the narrowest window in which WCAG 2.2
-// (1.4.10) forbids to scroll sideways.
+// Sizes of a desktop, of a part of a desktop, of a phone, and of the narrowest window in which a
+// page must not scroll sideways (WCAG 2.2, 1.4.10).
 const SIZES = [[1600, 1000], [1000, 800], [390, 844], [320, 640]];
 const LOOKS = SIZES.flatMap(([width, height]) => ["light", "dark"].map(
   (colorScheme) => ({size: {width, height}, colorScheme})));
@@ -22,8 +22,8 @@ async function missedStops(page) {
   // After the last stop, the tab key leaves the page, and then continues with the first stop. Boxes
   // that scroll may be stops, too.
   for (let i = 0; i < count + 8; ++i) await page.keyboard.press("Tab");
-  // A page without the keyboard may look different in the next window. Tab does not enter a page
-  // that has no controls.
+  // A page without the keyboard focus may look different in the next window size. Tab does not
+  // enter a page that has no controls.
   const isIn = () => page.evaluate(() => document.hasFocus());
   if (count > 0 && !await isIn()) await page.keyboard.press("Tab");
   const lost = count > 0 && !await isIn() ? ["Tab does not come back to the page"] : [];

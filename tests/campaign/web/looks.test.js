@@ -37,7 +37,8 @@ test("the view without its key looks well", async (t) => {
   const page = await open(t, await browser(t), address.replace(/#.*/, ""), {prepare: prepareLooks});
   await page.waitForFunction(() => !document.getElementById("problem").hidden);
   await looksWell(page, "no key");
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
+  // The page's errors about the refused connection are expected.
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));
 });
 
 test("the view of a live run looks well", async (t) => {
@@ -92,7 +93,8 @@ test("the page of a drive looks well", async (t) => {
   assert.equal(await page.locator("#speed").innerText(), "–");
   for (const button of ["#begin", "#take-over", "#give-back"]) assert.ok(await page.locator(button).isDisabled());
   await looksWell(page, "the end of the program");
-  page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));  // of that time
+  // The page's errors after the end of the program are expected.
+  page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
 });
 
 // ---- both pages of an experiment. The test sends the states of a session, so it need not wait for
@@ -126,8 +128,8 @@ const STATES = {
 };
 
 /**
- * Opens a page of an experiment. @return {page, show, sent}: the page, a function that makes it show
- * a state, and the objects that it has sent
+ * Opens a page of an experiment. @return {page, show, sent}: the page, a function that makes the
+ * page show a state, and the objects that the page has sent
  */
 async function experiment(t, main, options = {}) {
   let state = STATES[main][0];

@@ -26,7 +26,7 @@
 
   const boxOf = ({left, top: high, right, bottom}) => ({left, top: high, right, bottom});
 
-  /** The box of an element within its padding. */
+  /** The left edge and the right edge of an element's content, without the padding. */
   function contentBox(element) {
     const {left, right} = element.getBoundingClientRect();
     const {paddingLeft, paddingRight} = getComputedStyle(element);
@@ -40,8 +40,8 @@
   }
 
   /**
-   * The part of a box that the scrolled elements around it show; null if they show nothing. Calls
-   * onCut if an element that a reader cannot scroll cuts the box.
+   * The part of a box that is visible inside the scrolled elements around it; null if no part is
+   * visible. Calls onCut for an element that cuts the box and that a reader cannot scroll.
    */
   function shownPart(box, element, onCut) {
     const shown = {...box};
@@ -147,7 +147,10 @@
     return (high + 0.05) / (low + 0.05);
   }
 
-  /** The colour behind elements, the highest element first. Pictures and gradients are left out. */
+  /**
+   * The colour behind a text. `elements` lie over each other, the highest first. Pictures and
+   * gradients are left out.
+   */
   function backgroundOf(elements) {
     const under = elements.map((element) => parts(getComputedStyle(element).backgroundColor));
     const opaque = under.findIndex(([, , , opacity]) => opacity === 1);

@@ -48,7 +48,7 @@ export async function startDrive(t, settings = {}) {
   return {run, log, address, view};
 }
 
-/** The target of the WebSocket of an address, with its token. */
+/** The address of the WebSocket of a page, with the token of the page's address. */
 export function socketOf(address) {
   const {host, hash} = new URL(address);
   const token = new URLSearchParams(hash.slice(1)).get("token");
@@ -100,7 +100,7 @@ export async function withFakePads(context) {
   });
 }
 
-/** Sets a faked gamepad: its axes, and the buttons that are down. */
+/** Sets the state of a faked gamepad: its axes, and the buttons that are down. */
 export async function setPad(page, {id = "Test Wheel", axes = [1, 1], down = [], connected = true,
                                     mapping = ""} = {}) {
   await page.evaluate((state) => {

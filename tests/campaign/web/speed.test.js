@@ -54,7 +54,8 @@ test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms af
 test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
   const page = await open(t, await browser(t), await view(t, [log]));
-  // The driver's view comes last, and its first picture takes a second without a graphics processor.
+  // The driver's view is loaded last. Its first picture takes a second without a graphics
+  // processor.
   await page.waitForFunction(() => foglinePage.scene.view && foglinePage.why.modes.length > 0);
   await goTo(page, 7);
   let round = 0;
@@ -77,8 +78,8 @@ test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   }, ({p95_ms}) => (p95_ms > 50 ? ["p95_ms"] : []));
 });
 
-// The driver's view comes last. Its limit is our choice: a browser without a graphics processor needs
-// a second for it.
+// The driver's view is loaded last. We chose the limit of this view: a browser without a graphics
+// processor needs a second for the view.
 test("the page of a log of a million messages is there within 3 s, with the driver's view within 6 s", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=111200", "/lead/profile=sinusoid"]);
   const started = await browser(t);
@@ -95,7 +96,7 @@ test("the page of a log of a million messages is there within 3 s, with the driv
   }, ({opened_ms, with_view_ms}) => [opened_ms > 3000 && "opened_ms", with_view_ms > 6000 && "view"].filter(Boolean));
 });
 
-// The page measures this delay and sends it into the log of the run
+// The page measures the delay of this test, and sends the delay into the log of the run
 // (tools/web/page/drive/latency.js).
 test("from an input to the next frame that shows it the seat takes at most 50 ms", async (t) => {
   const network = freshNetwork();

@@ -116,7 +116,7 @@ void Append(const V& value, std::vector<Json>& flat) {
 
 bool Equal(const Json& shown, const Json& expected) {
   if (shown.is_boolean()) return shown.get<bool>() == (expected.get<std::int64_t>() != 0);
-  // The decoder has replaced the bytes of the text that are not valid UTF-8.
+  // The decoder has replaced the bytes of the text that are not valid UTF-8 by U+FFFD.
   if (shown.is_string() && expected.is_string() && shown != expected) {
     return shown.get<std::string>().find("\xef\xbf\xbd") != std::string::npos;
   }

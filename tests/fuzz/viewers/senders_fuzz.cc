@@ -1,6 +1,7 @@
 // The packets of an LCM network, in `fogline top`. Input: for each packet two bytes and a datagram.
-// The first byte is the port of the sender. The second byte is the time since the packet before, in
-// units of 10 ms; its highest bit tells whether this process dropped a packet before this one.
+// The first byte is the port of the sender. The second byte is the time since the previous packet,
+// in units of 10 ms. The highest bit of the second byte tells whether this process dropped a packet
+// before this one.
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/samples.h"

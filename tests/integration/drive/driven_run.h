@@ -17,8 +17,8 @@ inline constexpr const char* kDriveScenario = "scenario/drive.json";
 /// so an input counts as LOST only after 100 periods.
 inline constexpr const char* kLateRolesAreNotLost = "/health/lost_periods=100";
 
-/// On a busy machine a seat may send an input late. Only the tests of the deadman's limit use the
-/// usual limit, 0.3 s.
+/// On a busy machine a seat may send an input late. So the person counts as absent only after 5 s
+/// without an input. Only the tests of this limit itself use the usual limit, 0.3 s.
 inline constexpr const char* kALatePersonIsThere = "/person/deadman_s=5";
 
 /// Settings with which the policy always wants the human. So the person is asked to take over from
@@ -53,7 +53,8 @@ class Commands {
   double WaitFor(const std::function<bool()>& holds, Duration limit = kPatience) {
     const TimePoint begin = Clock::now();
     while (!holds()) {
-      // The limit counts only if no message waits, because the test may have been held up.
+      // If messages still wait, the time limit does not end this loop. The machine may have delayed
+      // the test itself, and one of these messages may make holds() true.
       const bool more = bus_.Wait(milliseconds(5));
       if (!more && Clock::now() - begin > limit) return -1;
     }

@@ -31,7 +31,7 @@ class InTerminal {
     for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
     const std::string folder = SourceDirectory().string();
-    // The attributes are read before the program can change them.
+    // Reads the attributes of the terminal before the program can change them.
     int of_program = -1;
     if (openpty(&terminal_, &of_program, nullptr, nullptr, nullptr) != 0) std::abort();
     tcgetattr(terminal_, &before_);
@@ -58,7 +58,7 @@ class InTerminal {
     ASSERT_EQ(write(terminal_, characters.data(), characters.size()),
               static_cast<ssize_t>(characters.size()));
   }
-  /// Whether the terminal gives single keys and does not show them.
+  /// Whether the terminal passes on each key at once and does not show it.
   bool IsRaw() const {
     termios now{};
     tcgetattr(terminal_, &now);

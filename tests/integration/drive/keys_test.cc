@@ -141,7 +141,7 @@ TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterAnError) {
 TEST_F(KeysInRealtimeTest, AreRefusedWithoutATerminal) {
   Words command = Drive(100);
   EXPECT_THAT(RunCommand(command).err, HasSubstr("error: --keys: standard input is no terminal"));
-  // A whole section without "drives" does not take the person out of the drive.
+  // The person still drives if --set replaces the whole section /person by one without "drives".
   command.insert(command.end(), {"--set", R"(/person={"override_by":"none"})"});
   const Outcome outcome = RunCommand(command);
   EXPECT_EQ(outcome.code, 2);

@@ -44,8 +44,8 @@ nlohmann::json EventsOf(const std::string& script, Words settings) {
   return VerbOf({"events", run.log(), "--json"})[0];
 }
 
-// The person brakes from 2 s to 3 s, and gives back at 4.5 s (scripted_seat.cc). The fog begins
-// after 15 s, so the arbitrator sends no request in these runs of 12 s.
+// The person brakes from 2 s to 3 s, and gives authority back at 4.5 s (scripted_seat.cc). The fog
+// begins after 15 s, so the arbitrator sends no request in these runs of 12 s.
 constexpr const char* kBrakes = "0 0 0 0 1; 2 0 0.6 0 1; 3 0 0 0 1; 4.5 0 0 2 1";
 
 TEST(OverrideInRealtimeTest, ABrakeTakesOverWithoutARequestUntilThePersonGivesBack) {

@@ -32,8 +32,9 @@ class PagePerson {
 
  private:
   void Drive() {
-    // On a busy machine the person would otherwise be silent for longer than the deadman allows.
-    // Without the right to this priority the tests need a machine that is not busy.
+    // This thread gets a higher priority. Without this priority, on a busy machine, the person may
+    // be silent for longer than /person/deadman_s. If the process has no right to this priority,
+    // the tests need a machine that is not busy.
     RunThreadBeforeOthers(/*priority=*/1);
     while (!ends_) {
       try {

@@ -94,7 +94,7 @@ TEST(DriveAtPageTest, RefusesWhatNoDriveCanFollowBeforeItBegins) {
   };
   EXPECT_EQ(error_of("--set", "/person/drives=false"),
             "fogline drive: error: --set /person/drives=false: in this verb a person drives\n");
-  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  // RFC 5737 reserves 203.0.113.0/24 for examples, so no machine has an address of it.
   EXPECT_EQ(
       error_of("--listen", "203.0.113.7"),
       "fogline drive: error: --listen: 203.0.113.7 is no address of this machine (`ip address` "

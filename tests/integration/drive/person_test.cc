@@ -1,5 +1,5 @@
 // A person who drives, in real processes: which seat may drive, how the person takes over and gives
-// back, and the replay of the person's inputs.
+// authority back, and the replay of the person's inputs.
 #include <cmath>
 #include <set>
 #include <string>
@@ -129,7 +129,7 @@ TEST_F(DrivenRunInRealtimeTest, SaysThatThePersonHasAcknowledged) {
   EXPECT_THAT(texts, testing::Contains("transfer to the human"));
   ASSERT_EQ(events["requests"].size(), 1U);
   // The seat's script begins at the first TRUTH that the seat receives. From then on the button is
-  // pressed. On a busy machine the seat receives it late.
+  // pressed. On a busy machine the seat receives this TRUTH late.
   EXPECT_LT(events["requests"][0]["acknowledged_s"], 5);
   const Outcome drawn =
       RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--set",

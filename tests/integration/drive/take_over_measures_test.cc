@@ -13,8 +13,9 @@ namespace fogline::test {
 namespace {
 
 /// Settings that shorten scenario/drive.json to 15 s: the fog begins at 1 s, the person is asked in
-/// the fog, and the car ahead brakes. On a busy machine a process may stand still for a while. The
-/// test is not about that, so inputs and person count as gone only after seconds.
+/// the fog, and the car ahead brakes. On a busy machine a process may stand still for a while. This
+/// must not disturb the test, so an input counts as lost, and the person as absent, only after some
+/// seconds.
 std::vector<std::string> ShortStory() {
   return {"/person/drives=true",
           "/fog/start_s=1",
@@ -60,7 +61,7 @@ TEST(TakeOverMeasuresInRealtimeTest, OfAPersonAreThoseThatTheRawMessagesGive) {
     if (value.is_null()) continue;
     EXPECT_NEAR(request[name], value, 1e-9) << name;
   }
-  // The result of the run has the same measures as `fogline metrics` has for the log.
+  // The result of the run has the same measures that `fogline metrics` computes from the log.
   EXPECT_EQ(result["take_overs"], measured["take_overs"]);
   // THEN the measures agree with kStory: first the pedal moves a little, then the person presses
   // the button

@@ -39,7 +39,7 @@ using ::testing::Not;
 /// input of the seat.
 const std::string kInputs(ChannelOf<driver_input_t>().name);
 
-/// Port and token of the seat of a run, as the participant's page gets them.
+/// The port and the token of the seat of a run. The participant's page gets both in its state.
 struct SeatPlace {
   std::uint16_t port = 0;
   std::string token;
@@ -185,7 +185,8 @@ TEST_F(DrivenTrialsInRealtimeTest, ThePageOpensTheSeatOnlyInTrialsInWhichThePart
 
 TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
   constexpr double kThreshold = 0.43219876;
-  // The second client of the seat may connect late on a busy machine.
+  // The run has 600 steps, because on a busy machine the second client of the seat may connect
+  // late.
   WritePlan(600, {"/person/drives=true", "/arbitrator/threshold=0.43219876", "/seed=918273645",
                   "/title=secret-title"});
   PageSession session(Run());
@@ -228,7 +229,7 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
   PageSession session(Run());
   std::optional<PagePerson> person;
   std::set<std::string> seats;
-  std::vector<bool> open;  // for each change: whether the participant's page has the seat
+  std::vector<bool> open;  // at each change: whether the page has an address of the seat
   bool killed = false;
   for (std::int64_t known = -1;;) {
     const nlohmann::json state = session.NextState(known);
@@ -267,7 +268,7 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   EXPECT_EQ(SeatIn(WaitForSeat(session)).port, port);
   TakenPort taken(port);
   const TimePoint end = Clock::now() + kPatience;
-  while (!taken.Take()) {  // fogline-web may have been started again before
+  while (!taken.Take()) {  // the session may start fogline-web again before the test has the port
     ASSERT_LT(Clock::now(), end);
     session.KillView();
     std::this_thread::sleep_for(kLookEvery);
@@ -275,12 +276,12 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   EXPECT_EQ(session.process().Wait(), 3);
   const std::string err = session.process().Err();
   EXPECT_THAT(err, HasSubstr("fogline-web was started 5 times in vain"));
-  // One line for each end of a fogline-web that the test has killed, one for the first failed
-  // start.
+  // stderr has one line for each fogline-web that the test has killed, and one line for the first
+  // failed start.
   const std::size_t kills = CountOf("was killed by signal 9", err);
   EXPECT_GE(kills, 1U) << err;
-  // If the test kills a fogline-web that has not opened the seat yet, this is the first failed
-  // start.
+  // If the test kills a fogline-web before it has opened the seat, this is the first failed start,
+  // and there is no further line.
   EXPECT_THAT(CountOf("; it is started again", err), ::testing::AnyOf(kills, kills + 1)) << err;
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }
@@ -320,7 +321,7 @@ TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoV
   EXPECT_EQ(ReceiveOp(first, "seat")["state"], "yours");
   WebClient second = connect(seat.token, "fogline.drive.v1");
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "taken");
-  // No run has begun, because no person has said that they are ready. Ctrl-C leaves no log.
+  // No run has begun, because no person has said that they are ready. So Ctrl-C leaves no log.
   EXPECT_EQ(Content(LogOf("trial-1-secret-a")), "");
   session.process().Signal(SIGINT);
   EXPECT_EQ(session.process().Wait(), 130);

@@ -54,8 +54,8 @@ class ExperimentFixture : public ::testing::Test {
     std::ofstream(file_) << plan.dump(2);
   }
 
-  /// A shell command that makes the trials of a participant from run `first` on, with the answers
-  /// of AnswersOf() and these options of `experiment run`.
+  /// A shell command that makes the trials of a participant from run `first` on. The answers come
+  /// from AnswersOf(). `options` are further options of `experiment run`.
   std::vector<std::string> Session(int participant, int first = 1,
                                    const std::string& options = "") const {
     const std::string input = folder_.File(fmt::format("answers-{}-{}.txt", participant, first));
@@ -73,7 +73,8 @@ class ExperimentFixture : public ::testing::Test {
     return RunCommand(command);
   }
 
-  /// The rows of trials.csv, by the names of the columns. @param code 1 if trials are missing
+  /// The rows of trials.csv, by the names of the columns.
+  /// @param code the exit code that the export must have; it is 1 if trials are missing
   std::vector<std::map<std::string, std::string>> ExportedTrials(int code = 0) const {
     const std::string out = folder_.File("tables");
     const Outcome outcome = Experiment("export", {"--out", out, "--force"});

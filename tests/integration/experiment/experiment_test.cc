@@ -39,7 +39,7 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
   {
     // Participant 2: the second run is killed while it is under way.
-    Background session(Session(2, 1, "--speed 1"));  // the run is not over before it is killed
+    Background session(Session(2, 1, "--speed 1"));  // slow, so that the kill comes in time
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
     // The recorder writes the beginning of the trial, a TRIAL message, during the run. No program
     // adds it to this log later, because the run is killed.
@@ -245,7 +245,8 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
     log::EventLogWriter writer(part);
     while (const auto event = reader.Next()) {
       const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
-      // So many that the last STATUS of the arbitrator, which may be some steps old, shows it.
+      // The log loses the commands of 41 steps. So even an old STATUS of the arbitrator shows that
+      // it has published more commands than the log has.
       const bool lost = event->channel == "HOST_COMMAND" && step >= 20 && step <= 60;
       if (lost || event->channel == log::kLogSealChannel) continue;
       writer.Write(event->channel, event->utime, event->data);
@@ -259,7 +260,8 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
 }
 
 TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
-  // GIVEN two complete logs without facts, as after a crash. They change places.
+  // GIVEN two complete logs without facts of a trial, as after a crash. The test then exchanges
+  // their file names
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
   const std::filesystem::path own = std::filesystem::path(results_) / "participant-01";
   const std::string first = (own / "trial-1-low.lcm").string();
@@ -287,7 +289,8 @@ TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
   std::filesystem::rename(second, first);
   std::filesystem::rename(folder_.File("low.lcm"), second);
   EXPECT_THAT(states(), ElementsAre("broken", "broken", "done"));
-  // THEN each log is asked at its own place, and its facts have the seed of its run.
+  // WHEN each log has its own name again, THEN the questions of its run are asked, and its facts
+  // have the seed of its run
   std::filesystem::rename(first, folder_.File("mid.lcm"));
   std::filesystem::rename(second, first);
   std::filesystem::rename(folder_.File("mid.lcm"), second);
@@ -343,7 +346,7 @@ TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
     EXPECT_EQ(row.at("kss.sleepiness"), "");
     EXPECT_EQ(row.at("collision"), "");
   }
-  // AND the trials are run again, into logs of their own.
+  // AND participant 2 makes these trials again, and each trial has a new log
   EXPECT_EQ(RunCommand(Session(2)).code, 0);
   EXPECT_THAT(Experiment("status").out, HasSubstr("6 of 12 trials"));
 }

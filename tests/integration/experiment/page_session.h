@@ -57,7 +57,8 @@ class PageSession {
   void Begin(const nlohmann::json& state) {
     participant_->Send(nlohmann::json{{"op", "begin"}, {"state", state["state"]}}.dump());
   }
-  /// Answers item i with `least` + i. On the scales of workload the answer is five times as large.
+  /// Answers item i with `least` + i, or with five times this value if the items are the scales of
+  /// workload.
   void Answer(const nlohmann::json& state, int least) {
     nlohmann::json values = nlohmann::json::array();
     const bool is_tlx = state["items"].size() == 6;

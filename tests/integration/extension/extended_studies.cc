@@ -60,7 +60,7 @@ TEST(ExtensionTest, AnotherPolicyOfTheTableIsInTheScenarioAndInThePolicyStudy) {
   }
   ASSERT_TRUE(variants.contains("cautious"));
   EXPECT_EQ(variants.at("cautious"), variants.at("traded")) << "in every case, by every measure";
-  // The first table has only some of the policies.
+  // The first table has only some of the policies, so the test leaves it out.
   for (const report::StudyTable& table : std::span(result.section.tables).subspan(1)) {
     EXPECT_TRUE(std::ranges::any_of(table.rows, [](const auto& row) {
       return row[0] == "cautious";

@@ -23,7 +23,8 @@ class CrashOfARoleTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(CrashOfARoleTest, ChangesNoResultAndIsReported) {
   const std::string& role = GetParam();
-  // Each role is killed at a step of its own, which is the same in every execution.
+  // The step at which a role is killed depends only on the role's name, so it is the same in every
+  // execution.
   std::mt19937 random(static_cast<unsigned>(role.size() * 256 + static_cast<unsigned>(role[0])));
   const int step = std::uniform_int_distribution(80, 200)(random);
   WatchedRun watched;
@@ -155,7 +156,7 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesIsRefusedAndToldAndTheRunGoesOn) {
 TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
   WatchedRun watched({}, 1200);
   watched.WaitForStep(100);
-  // The run may last longer than the usual limit of this wait, which is 60 s.
+  // `--wait 0` sets no limit for this wait. The usual limit is 60 s, and the run may last longer.
   Background stray({Program("fogline-acc"), "--lcm-url", watched.url(), "--wait", "0"});
   EXPECT_TRUE(stray.WaitForErr("fogline-acc: run " + watched.RunId() + " on " + watched.url()));
   EXPECT_TRUE(watched.ExpectSameResult()["restarts"].empty());

@@ -112,8 +112,8 @@ TEST(FaultTest, NoRoleHasASocketOfTheRunner) {
 }
 
 TEST(FaultTest, NamesAProcessThatHangs) {
-  // At the end of the run, a busy machine may have given another role no processor for a second.
-  // Then this role is named, and the test tries again.
+  // The error must name the stopped role. If a busy machine gave another role no processor for a
+  // second at the end of the run, the error may name this other role. Then the test tries again.
   constexpr int kTries = 3;
   bool named = false;
   std::string err;

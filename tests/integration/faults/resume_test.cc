@@ -62,8 +62,8 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
   ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
   for (const Words& sealed : {Words{}, Words{"--key", key}}) {
     std::filesystem::remove(log_);
-    // GIVEN a driver that was started from another shell
-    // The run lasts six seconds, so that even a busy machine kills its runner before the end.
+    // GIVEN a driver that was started from another shell. The run lasts six seconds, so that even
+    // on a busy machine the test kills the runner before the end of the run
     SeenRun seen(Paper(kResumeSteps) + Words{"--pace", "2", "--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner is killed, THEN the same driver continues with the next runner

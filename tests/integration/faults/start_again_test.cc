@@ -39,7 +39,7 @@ class StartAgainTest : public testing::Test {
     return command;
   }
   std::string log() const { return folder_.File("run.lcm"); }
-  /// Makes an installation that the test can change.
+  /// Makes an installation of Fogline that the test can change.
   void MakeInstallation() const {
     fs::create_directory(folder_.File("bin"));
     fs::copy_file(Program("fogline"), folder_.File("bin/fogline"));
@@ -88,8 +88,8 @@ TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
 TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
   MakeInstallation();
   const std::string fusion = folder_.File("bin/fogline-fusion");
-  // At the end of the run, a busy machine may have given another role no processor for a second.
-  // Then this role is named, and the test tries again.
+  // The error must name the fusion. If a busy machine gave another role no processor for a second
+  // at the end of the run, the error may name this other role. Then the test tries again.
   constexpr int kTries = 3;
   std::string err;
   for (int i = 0; i < kTries && err.find("from fusion (last heard: step ") == err.npos; ++i) {

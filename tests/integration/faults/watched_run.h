@@ -44,7 +44,7 @@ inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& 
   return digest;
 }
 
-/// A run over the network. Its STATUS messages tell this test the process of each role.
+/// A run over the network. Its STATUS messages tell the test which process has which role.
 class WatchedRun {
  public:
   /// @param changes changes of the scenario, such as "--set", "/steps=10"

@@ -63,7 +63,7 @@ class ByHandTest : public NetworkTest {
       Kill(role);
       const std::uintmax_t before = std::filesystem::file_size(Log());
       Start(lab, role);
-      bytes = before + 20'000;  // the run has gone on
+      bytes = before + 20'000;  // if the log has this size, the run has gone on
     }
     const auto result = ResultOf(run);
     EXPECT_EQ(result["digest"], Undisturbed());

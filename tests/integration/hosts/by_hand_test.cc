@@ -12,7 +12,8 @@
 namespace fogline::test {
 namespace {
 
-/// How many of the roles are started before the run, and whether the last role comes first.
+/// The order in which a test starts the roles and the run: how many roles it starts before the run,
+/// and whether it starts the last role of the graph first.
 struct StartOrder {
   std::string name;
   std::size_t before_the_run;

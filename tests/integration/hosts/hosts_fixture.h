@@ -19,7 +19,8 @@ namespace fogline::test {
 
 class HostsTest : public NetworkTest {
  protected:
-  /// "ROLE=HOST:FOLDER" for a machine of the laboratory, with the programs of this build.
+  /// The value of --on, "ROLE=HOST:FOLDER", that starts a role on a machine of the laboratory.
+  /// FOLDER has the programs of this build.
   static std::string On(const std::string& role, const std::string& host) {
     return role + "=" + host + ":" + ProgramDirectory().string();
   }
@@ -29,8 +30,8 @@ class HostsTest : public NetworkTest {
     for (const std::string& role : roles) options.insert(options.end(), {"--on", On(role, "lab2")});
     return options;
   }
-  /// The command of a run on a machine of a laboratory. `ssh` is the command that the run calls in
-  /// place of ssh.
+  /// The command of a run whose runner is on `machine`. `ssh` is the command that the run calls in
+  /// place of ssh. `places` are the options --on of the roles.
   std::vector<std::string> RunFrom(const Machine& machine, const std::string& ssh,
                                    const std::vector<std::string>& places,
                                    const std::vector<std::string>& more = {}) {
@@ -48,11 +49,11 @@ class HostsTest : public NetworkTest {
           std::to_string(i + 1) + " meta l4proto udp drop; }; }'");
     }
   }
-  /// Waits until the log of a run has a dozen steps. The run must have a pace. Without a pace it
-  /// would have ended by this time.
+  /// Waits until the log of a run has a dozen steps. The run must have a pace, because a run
+  /// without a pace would already have ended.
   [[nodiscard]] bool IsUnderWay() const { return GrowsTo(20'000, Log()); }
 
-  /// Makes a copy of the program `fogline`. The copy differs from the program only by its version.
+  /// Makes a copy of the program `fogline`. The copy differs from the program only in its version.
   /// @return what the copy prints for --version
   static std::string MakeOtherVersion(const std::string& copy) {
     const std::string own = RunCommand({Program("fogline"), "--version"}).out;

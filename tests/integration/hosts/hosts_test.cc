@@ -28,8 +28,8 @@ class EnteredHostsTest : public HostsTest {
     if (IsSkipped() || HasFatalFailure()) return;
     lab_.emplace(2);
     std::ofstream script(folder_.File("enter"));
-    // The last argument is the command that ssh would get. The script sets SSH_CONNECTION, as sshd
-    // does.
+    // The last argument of the script is the command that ssh would execute on the other machine.
+    // The script sets SSH_CONNECTION, as sshd does.
     script << "for command; do :; done\nexport SSH_CONNECTION='10.76.67.1 1 10.76.67.2 22'\nexec";
     for (const std::string& word : (*lab_)[1].On({"sh", "-c"})) script << " '" << word << "'";
     script << " \"$command\"\n";
@@ -56,8 +56,8 @@ TEST_F(EnteredHostsTest, StartAKilledRoleThereAgain) {
 }
 
 TEST_F(EnteredHostsTest, EndSoonAfterCtrlC) {
-  // A machine that is not busy needs less than 5 s. Processes that are left behind end by
-  // themselves 15 s after the stall timeout.
+  // The limit is for a busy machine. A machine that is not busy needs less than 5 s. Processes that
+  // a run leaves behind end by themselves 15 s after the stall timeout.
   ExpectCtrlCEndsEverything(lab(), Enter(), std::chrono::seconds(30));
 }
 
@@ -90,8 +90,7 @@ TEST_F(EnteredHostsTest, EndTheRunWhenTheConnectionEnds) {
 }
 
 TEST_F(EnteredHostsTest, PrintTheLastLinesOfARoleWithTheNameOfItsMachine) {
-  // GIVEN that the program of the ACC on the other machine is replaced by a script that ends by
-  // itself
+  // GIVEN a script in place of the ACC's program on the other machine. The script ends by itself
   std::ofstream(folder_.File("fogline-acc")) << "#!/bin/sh\necho 'no sensor' >&2\nexit 3\n";
   std::filesystem::permissions(folder_.File("fogline-acc"), std::filesystem::perms::owner_all);
   std::filesystem::copy(Program("fogline"), folder_.File("fogline"));

@@ -36,8 +36,8 @@ inline std::vector<std::string> FoglineOn(const Machine& machine) {
   return names;
 }
 
-/// Waits until no process of Fogline is left on a machine. @return those that are left after
-/// `limit`
+/// Waits until no process of Fogline is left on a machine. @return the names of the processes that
+/// are left after `limit`
 inline std::vector<std::string> LeftOn(const Machine& machine,
                                        std::chrono::seconds limit = kPatience) {
   const auto end = std::chrono::steady_clock::now() + limit;

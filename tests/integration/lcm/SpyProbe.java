@@ -1,5 +1,5 @@
-// Reads the table that a person sees in lcm-spy's window. SpyProbe is a Java agent. Each time that
-// a channel has appeared, the agent prints all rows of the table, with tabs between the cells.
+// Reads the table that a person sees in lcm-spy's window. SpyProbe is a Java agent. Each time a new
+// channel appears in the table, the agent prints all rows, with tabs between the cells.
 // lcm-spy itself is unchanged:
 //
 //   JAVA_TOOL_OPTIONS=-javaagent:probe.jar fogline spy --lcm-url URL
@@ -28,8 +28,8 @@ public final class SpyProbe {
         System.out.flush();
         rowsShown = rows;
       } catch (IndexOutOfBoundsException error) {
-        // lcm-spy adds rows on its LCM thread, and this row was not complete yet. A later call of
-        // look() finds the complete row, at the latest when lcm-spy adds the next one.
+        // lcm-spy adds rows on another thread, its LCM thread, and a row was not complete yet. A
+        // later call of look() finds the complete row, at the latest when lcm-spy adds another row.
       }
     }
   }

@@ -19,9 +19,9 @@
 
 namespace fogline::test {
 
-/// Publishes a mark, on a channel of no role, until `seen` returns true. A program that has
-/// received the mark listens to the network, and has received all messages that were sent before
-/// the mark. @return false after the time limit
+/// Publishes a message again and again, as a mark on a channel that no role uses, until `seen`
+/// returns true. A program that has received the mark listens to the network, and has received all
+/// earlier messages. @return false after the time limit
 inline bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen,
                  std::chrono::seconds limit = kPatience) {
   const auto end = Clock::now() + limit;
@@ -34,8 +34,8 @@ inline bool Mark(runtime::Bus& bus, const std::string& channel, const std::funct
 }
 
 /// The command, with real-time priority if the system permits this. lcm-logger queues 30 messages
-/// and loses further messages. Without this priority, on a busy machine, lcm-logger would lose the
-/// messages of some milliseconds.
+/// and loses further messages. Without the priority, lcm-logger may get no processor time for some
+/// milliseconds on a busy machine, and lose messages.
 inline std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
   const std::vector<std::string> first{"chrt", "--rr", "1"};
   std::vector<std::string> probe = first;
@@ -98,7 +98,8 @@ class Spy {
 
   /// Waits until lcm-spy shows everything that was sent so far.
   /// lcm-spy adds a row on its LCM thread while another thread shows the table. If both happen at
-  /// the same time, lcm-spy shows the row only when it adds the next one. So further marks follow.
+  /// the same time, lcm-spy shows the row only when it adds the next row. So CatchUp() sends
+  /// further marks if the first mark does not appear.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
     const auto shows_mark = [&] {
       const std::string out = process_->Out();

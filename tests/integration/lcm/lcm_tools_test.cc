@@ -37,7 +37,8 @@ Traffic ReadTraffic(const std::string& log) {
   return traffic;
 }
 
-/// Payloads by step. A step may have several messages (repairs) if all their bytes are the same.
+/// Payloads by step. A step may have several messages, because lost messages are sent again. All
+/// messages of a step must have the same bytes.
 std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
   std::map<std::int64_t, Payload> steps;
   for (const Payload& payload : payloads) {
@@ -97,14 +98,14 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
-// The driver waits for lcm-spy once in this number of steps. lcm-spy is then ready for the next
-// messages. lcm-spy may lose later messages if it gets no processor time.
+// The driver waits for lcm-spy once in this number of steps. lcm-spy has then handled all messages
+// so far. Between two such steps lcm-spy may lose messages if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 
 /// The driver of a run. The driver answers for a step only after lcm-logger has written all earlier
 /// messages. lcm-logger queues 30 messages, and lcm-spy queues as many as the buffer of its socket
-/// holds. On a busy machine both programs lose further messages. This driver makes the run wait, so
-/// the run sends fewer messages at a time.
+/// holds. On a busy machine both programs lose the messages beyond that. This driver makes the run
+/// wait, so the run sends fewer messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)

@@ -173,7 +173,7 @@ TEST(LogplayerTest, RefusesWhatItCannotPlay) {
               HasSubstr("error: --lcm-url file://x: no LCM URL such as"));
 }
 
-/// Tests in which programs without a URL use the meeting address of this test.
+/// Tests in which LCM_DEFAULT_URL gives an address of this test to programs that get no URL.
 class SpyAtMeetingTest : public testing::Test {
  protected:
   SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }

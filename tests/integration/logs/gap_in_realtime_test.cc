@@ -17,7 +17,7 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The runs of this test have 250 steps, of which the last are in fog.
+/// The runs of this test have 250 steps. The last steps are in fog.
 class GapInRealtimeTest : public GapTest {
  protected:
   /// Makes a run. @return its log
@@ -48,8 +48,9 @@ TEST_F(GapInRealtimeTest, PairsHaveNoSafetyImprovementIfALogLacksATruth) {
 }
 
 TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAreMissing) {
-  // A run whose second event is its first transfer. On a busy machine a run may have other events
-  // before, because roles skip steps.
+  // The test needs a run whose second event is its first transfer. On a busy machine roles skip
+  // steps, so a run may have other events before its first transfer. Then the test makes another
+  // run.
   constexpr int kTries = 10;
   constexpr int kBefore = 60;
   std::string whole;
@@ -116,7 +117,8 @@ TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
 }
 
 TEST_F(GapInRealtimeTest, SaysWithWhichStepALateLogBegins) {
-  // A run in which no role skips a step. On a busy machine, roles do.
+  // The test needs a run in which no role skips a step. If roles skip steps on a busy machine, the
+  // test makes another run.
   bool is_whole = false;
   for (int attempt = 0; attempt < 5 && !is_whole; ++attempt) {
     is_whole = Json({"metrics", Run("traded")}, 0)[0]["realtime"]["missed_messages"] == 0;

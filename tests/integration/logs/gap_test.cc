@@ -149,7 +149,8 @@ TEST_F(GapTest, ExportHasARowWithEmptyCellsForAMissingMessage) {
   std::vector<std::string> expected = LinesOf(out_of_whole + "/RADAR.csv");
   ASSERT_EQ(expected.size(), 501U);
   std::string& row = expected[395];
-  // The header is "header.run_id,header.step,header.utime".
+  // The first three cells are the header of the message: header.run_id, header.step and
+  // header.utime. The export knows them, and leaves the other cells empty.
   std::size_t end = 0;
   for (int comma = 0; comma < 3; ++comma) end = row.find(',', end) + 1;
   const auto cells = std::count(row.begin() + static_cast<std::ptrdiff_t>(end), row.end(), ',');
@@ -230,7 +231,7 @@ TEST_F(GapTest, ExportHasARowForEachStepOfALogThatIsCutOff) {
 TEST_F(GapTest, AnMcapFileOfALogWithGapsHasNoDigest) {
   const std::string file = folder_.File("run.mcap");
   EXPECT_EQ(Fogline({"export", WithoutOne("RADAR"), "--mcap", file}).code, 1);
-  // A text of a map in MCAP follows its length.
+  // In a map of an MCAP file, the length of each text comes before the text.
   EXPECT_THAT(Content(file), HasSubstr(std::string("digest\x07\0\0\0unknown", 17)));
 }
 

@@ -35,8 +35,8 @@ class LateLogTest : public GapTest {
     });
   }
 
-  /// The first entry of `fogline events` for a log that begins late, and all later entries of the
-  /// whole log.
+  /// The events that `fogline events` must print for a log that begins with step `first`: one entry
+  /// for this step, and all entries of the whole log after this step.
   nlohmann::json EventsFrom(std::int64_t first, const std::string& mode) const {
     auto events = nlohmann::json::array();
     events.push_back({{"step", first},

@@ -118,7 +118,7 @@ TEST_F(LiveReplayTest, OfALogWithAGapIsRefusedInLockstep) {
   const Outcome outcome = Replay(gap, {});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("gap.lcm: error: step 100 lacks RADAR: a run in lockstep"));
-  // The roles of the other channels have all their messages.
+  // With `--channels LIDAR` the replay needs only the messages of LIDAR, and the log has them all.
   EXPECT_EQ(Replay(gap, {"--channels", "LIDAR"}).code, 1);
 }
 
@@ -172,7 +172,8 @@ TEST_F(LiveReplayInRealtimeTest, RunsTheThreadsOfItsRolesBeforeOthersAndSaysSo) 
   if (!granted) return MachineLacks("the right to real-time priority");
   Background program({Program("fogline"), "replay", log_, "--live", "--realtime", "--speed", "2",
                       "--log", live_, "--json", "--quiet"});
-  // THEN radar and LiDAR have a thread each, and another one for the backlog of their bus
+  // THEN four threads have this priority: one each for radar and LiDAR, and one each for the
+  // backlogs of their two buses
   constexpr int kThreads = 4;
   int threads = 0;
   while (threads < kThreads && IsAlive(program.pid())) {

@@ -34,8 +34,8 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN a forged log replaces the log of this run. The forged log is of another run, but has the
-  // id of this run
+  // WHEN a forged log replaces the log of this run. The forged log is a log of another run, into
+  // which the test has written the id of this run
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });

@@ -55,7 +55,8 @@ TEST_F(SealedLogTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
 }
 
 TEST_F(SealedLogTest, ARunThatIsInterruptedSealsWhatItHas) {
-  // A recorder that does not end within 1.5 s is killed, and leaves the log without a seal.
+  // A recorder that does not end within 1.5 s is killed, and leaves the log without a seal. Then
+  // the test tries again.
   constexpr int kTries = 3;
   nlohmann::json digest = nlohmann::json::object();
   for (int i = 0; i < kTries && digest.value("seal", "none") == "none"; ++i) {
@@ -163,7 +164,9 @@ TEST_F(SealedLogTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInR
                                   "--quiet", "--set", "/steps=20", "--key", key, "--log", log_});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["seal"], "holds");
-  constexpr std::size_t kTimeInEvent = 19;  // the last byte of the time, after sync word and number
+  // The offset of the last byte of an event's time. The time comes after the sync word and the
+  // number of the event.
+  constexpr std::size_t kTimeInEvent = 19;
   for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
     FlipLowestBit(log, kTimeInEvent);
     FlipLowestBit(log, FirstEventOf(log, log::kLogSealChannel).at + kTimeInEvent);

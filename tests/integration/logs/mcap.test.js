@@ -56,7 +56,7 @@ async function indexed(t, name = file) {
   return McapIndexedReader.Initialize({readable: source, decompressHandlers});
 }
 
-/** The decoder that a schema alone describes. */
+/** A decoder that is built only from a schema. */
 function decoderOf(schema) {
   assert.equal(schema.encoding, "protobuf");
   const types = protobuf.Root.fromDescriptor(FileDescriptorSet.decode(schema.data));

@@ -10,7 +10,7 @@ mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/mcap-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# Prints the peak resident memory in KiB of the export of a log with so many steps.
+# Prints the peak resident memory, in KiB, of the export of a log with $1 steps.
 peak() {
   "$fogline" run scenario/paper.json --quiet --transport direct --set "/steps=$1" \
     --log "$folder/run.lcm" --force >&2

@@ -21,7 +21,8 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// All features with which roles read inputs on demand, have a memory, or draw random numbers.
+// Settings that switch on all features with which roles read inputs on demand, have a memory, or
+// draw random numbers.
 const Words kEverything{"--set", "/human/loses_awareness=true",
                         "--set", "/human/misjudges=true",
                         "--set", "/human/sight=fog",

@@ -80,7 +80,7 @@ TEST_F(WallClockTest, InLockstepIsInTheLogOnRequestAndNotInTheDigest) {
 
 TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
   const std::string digest = Digest({});
-  std::filesystem::remove(log_);  // so that the next run is the one whose log grows
+  std::filesystem::remove(log_);  // so that GrowsTo() sees the log of the next run
   // GIVEN a run that was interrupted
   Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--force", "--log",
                   log_, "--set", "/steps=200", "--pace", "2", "--wall-clock"});
@@ -97,7 +97,7 @@ TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
 
 TEST_F(WallClockTest, SurvivesTheDeathOfTheRecorderAndOfARoleThatAsksItForOldSteps) {
   const std::string digest = Digest({});
-  std::filesystem::remove(log_);  // so that the next run is the one whose log grows
+  std::filesystem::remove(log_);  // so that GrowsTo() sees the log of the next run
   Background run({Program("fogline"), "run", "scenario/paper.json", "--force", "--log", log_,
                   "--json", "--set", "/steps=200", "--pace", "20", "--wall-clock",
                   "--stall-timeout", "30"});

@@ -1,5 +1,5 @@
-// top, doctor and roles find a run on its own port although they do not get the run's URL. Each
-// test has its own meeting address, so it receives no announcements of other runs.
+// top, doctor and roles find a run that has its own port, although they do not get the run's URL.
+// Each test has its own meeting address, so it receives no announcements of other runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -85,7 +85,8 @@ TEST(AnnounceTest, TopShowsARunOnAPortOfItsOwnWithoutBeingToldWhereItIs) {
   Background run(meeting.Run({"--transport", "udpm", "--pace", "1", "--set", "/steps=10000"}));
   const Place place = PlaceOf(run);
   EXPECT_NE(place.url.substr(0, place.url.find('?')), meeting.url().substr(0, place.url.find('?')));
-  // On a busy machine a process of the run may need longer than a look of top.
+  // On a busy machine a process of the run may send nothing during the 3 s for which top listens.
+  // Then the test calls top again.
   json seen = TopOnce(meeting);
   const auto is_whole = [&] {
     return seen["announced"].size() == 1 && seen["runs"].size() == 1 &&
@@ -398,7 +399,8 @@ TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedOnItsOwnMachineOnly) {
         lab[place].On({Program("fogline"), "top", "--once", "--json", "--interval", "5"}));
     return json::parse(top.out)["announced"].size();
   };
-  // On a busy machine the runner may need longer than a look of top.
+  // On a busy machine the runner may send nothing during the 5 s for which top listens. Then the
+  // test calls top again.
   std::size_t here = announced(0);
   const TimePoint end = Clock::now() + kPatience;
   while (here != 1 && Clock::now() < end) here = announced(0);

@@ -55,7 +55,8 @@ inline Absence Stopped(std::string name, std::vector<std::string> options,
 
 class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence> {
  protected:
-  /// Makes a run with this absence in the middle. The result must be that of an undisturbed run.
+  /// Makes a run in whose middle the absence begins and ends. The result must be that of an
+  /// undisturbed run.
   void ExpectAbsenceCostsNoRun(const Absence& absence) {
     const Lab lab(2);
     Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));
@@ -80,7 +81,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
     ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
     const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
     absence.begin(both);
-    std::this_thread::sleep_for(kAway);  // longer than a role waits; the test is about this pause
+    std::this_thread::sleep_for(kAway);  // the test is about this pause
     absence.end(both);
     const auto result = ResultOf(run);
     EXPECT_EQ(result["digest"], Undisturbed());

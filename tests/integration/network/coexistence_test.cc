@@ -100,8 +100,8 @@ TEST(SilenceTest, TopAndDoctorListTheRolesThatWaitBeforeAnyRun) {
   const std::string own = runtime::FreshMulticastUrl();
   const Background driver(meeting.Command("fogline-driver", {}));
   const Background acc(meeting.Command("fogline-acc", {"--lcm-url", own}));
-  // WHEN top and doctor look at the meeting address, THEN they list both roles with place and
-  // version
+  // WHEN top and doctor look at the meeting address, THEN they list both roles, each with its place
+  // and version
   json waiting;
   const TimePoint end = Clock::now() + kPatience;
   while (waiting.size() < 2 && Clock::now() < end) waiting = TopOnce(meeting)["waiting"];

@@ -20,7 +20,8 @@ TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
   Meeting meeting;
   Background run(meeting.Run({"--pace", "1"}));
   EXPECT_THAT(PlaceOf(run).url, testing::StartsWith(meeting.url()));
-  // On a busy machine a process of the run may need longer than a look of top.
+  // On a busy machine a process of the run may send nothing during the 3 s for which top listens.
+  // Then the test calls top again.
   json seen = TopOnce(meeting);
   const TimePoint end = Clock::now() + kPatience;
   while (seen["runs"].size() != 1 && Clock::now() < end) seen = TopOnce(meeting);

@@ -24,7 +24,8 @@ class DoctorNetworkTest : public NetworkTest {
     return {Program("fogline"), "doctor", "--json", "--lcm-url", kUrl,
             "--with",           other,    "--wait", "20"};
   }
-  /// @param finds texts that doctor finds sooner or later
+  /// Calls doctor until its output has all texts in `finds`, because on a busy machine doctor may
+  /// miss messages. @return the output as JSON
   static json Doctor(const Machine& machine, const std::string& url = kUrl,
                      const std::vector<std::string>& finds = {}) {
     const Outcome doctor = RunUntilItPrints(

@@ -87,7 +87,7 @@ class Group {
   Group& operator=(const Group&) = delete;
 
   bool Send(runtime::Bytes bytes) const { return send(out_, bytes.data(), bytes.size(), 0) >= 0; }
-  /// A datagram of another process, empty if there is none.
+  /// Takes a datagram of another process. @return its bytes; empty if no datagram has come
   runtime::Bytes Receive() {
     const ssize_t size = recv(in_, heard_.data(), heard_.size(), 0);
     return {heard_.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size))};
@@ -101,8 +101,9 @@ class Group {
   static void Set(int fd, int level, int option, const Value& value) {
     Check(setsockopt(fd, level, option, &value, sizeof(value)), "setsockopt");
   }
-  /// Drops the datagrams of this process. The socket filter gets a datagram without its IP header:
-  /// the first bytes are the UDP header, which begins with the sender's port.
+  /// Makes the kernel drop the datagrams that this process itself sends. The socket filter gets a
+  /// datagram without its IP header: the first bytes are the UDP header, which begins with the
+  /// sender's port.
   void IgnoreOwn() const {
     sockaddr_in own{};
     socklen_t size = sizeof(own);
@@ -271,8 +272,8 @@ class Attacker {
     Wrap();
   }
   void Fragment() {
-    // Sizes and offsets of fragments that contradict each other: fragments that lie beyond the
-    // message, or beyond 2^32.
+    // The sizes and the offsets of the fragments contradict each other: some fragments lie beyond
+    // the end of the message, or beyond 2^32.
     constexpr std::array<std::uint32_t, 7> kAbsurd{0,          1,          1000,      0x7fffffff,
                                                    0x80000000, 0xfffffc00, 0xffffffff};
     constexpr std::array<std::uint16_t, 5> kNumbers{0, 1, 2, 0x7fff, 0xffff};
@@ -360,8 +361,8 @@ int Main(int argc, char** argv) {
     for (runtime::Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
       attacker.Learn(heard);
     }
-    // If this process got no processor time, the loop sends the missed datagrams. So the rate is
-    // right on average.
+    // If this process got no processor time for a while, the loop now sends the datagrams that are
+    // due. So the rate is right on average.
     while (static_cast<double>(sent) < rate_hz * elapsed_s && stopped == 0) {
       network.Send(attacker.Next());
       ++sent;

@@ -32,7 +32,7 @@ class HostileTrafficTest : public NetworkTest {
     nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run on a machine whose network is full of hostile traffic even before the run starts. The
+  /// Makes a run on a machine whose network already has hostile traffic when the run starts. The
   /// run must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, const Hostility& hostility) {

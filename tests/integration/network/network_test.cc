@@ -126,7 +126,8 @@ INSTANTIATE_TEST_SUITE_P(Together, TwoRunsTest, testing::Values(0U, 1U), [](cons
 TEST_F(NetworkTest, AProcessThatIsBoundToAnotherRunIsIgnoredAndNamed) {
   const Lab lab(2);
   Background stale(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", "123"}));
-  // The process says nothing before it hears a run, and it may start late. So the run takes 5 s.
+  // The runner can name the driver only after a message of the driver has come, and the driver may
+  // start late. So the run takes 5 s.
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "10"})));
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
@@ -206,8 +207,8 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
     return std::ranges::count_if(drivers,
                                  [](const Background& one) { return !IsAlive(one.pid()); });
   };
-  // The runner does not wait for the end of its driver. Even on a busy machine the driver ends
-  // within kPatience.
+  // The runner does not wait until its driver has ended, so the test waits for this. Even on a busy
+  // machine the driver ends within kPatience.
   const TimePoint end = Clock::now() + kPatience;
   while (ended() == 0 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   EXPECT_EQ(ended(), 1);

@@ -261,8 +261,8 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
   const auto has_group = [&machine](const std::string& interface) {
     return runtime::HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
   };
-  // The driver also announces at the meeting address that it waits. The meeting address has the
-  // same group.
+  // The driver joins the group of kUrl. The driver also announces at the meeting address that it
+  // waits, and the meeting address has the same group.
   const Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
   const TimePoint end = Clock::now() + kPatience;
   while (!has_group("eth0") && Clock::now() < end) LastFor(milliseconds(50));

@@ -29,7 +29,8 @@ SenderView SenderOn(const watch::Senders& senders, const std::string& channel) {
 }
 
 /// Number of packets that the kernel has dropped before they reached a socket. The kernel drops
-/// packets if a processor is too busy (netdev_max_backlog). Such packets are lost on the network.
+/// packets if a processor is too busy (netdev_max_backlog). The tap counts such packets as lost on
+/// the network.
 std::int64_t DroppedByKernel() {
   std::ifstream table("/proc/net/softnet_stat");  // a line for each processor
   std::int64_t sum = 0;
@@ -122,7 +123,7 @@ TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
   const auto counts = SenderOn(senders_, "FLOOD").counts;
   EXPECT_EQ(counts.missed_here, senders_.View(Clock::now()).own_overflow);
   EXPECT_LE(counts.lost, DroppedByKernel() - dropped_before);
-  // AND a message that the sender leaves out counts as lost, as before the overflow.
+  // AND a message that the sender leaves out after the overflow counts as lost
   ++number;
   sender.Send(number, "FLOOD");
   ASSERT_TRUE(DrainUntil(

@@ -221,8 +221,9 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
-  // GIVEN a client with an expression that is slow on some names. The expression is long, so the
-  // relay allows a long search. Another client subscribes to everything
+  // GIVEN a client that subscribes with a regular expression. The search for this expression is
+  // slow in some channel names. The expression is long, so the relay allows a long search. Another
+  // client subscribes to everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   runtime::Bus bus(relay.url());
@@ -230,7 +231,7 @@ TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   bus.Subscribe("LAST", [&heard](runtime::Bytes) { ++heard; });
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  // WHEN a third client publishes more and more names on which the expression is slow
+  // WHEN a third client publishes on more and more channels with such names
   constexpr int kNames = 5000;
   for (int i = 0; i < kNames; ++i)
     bus.Publish(std::string(20, 'a') + std::to_string(i), Payload(1));

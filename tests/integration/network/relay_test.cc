@@ -144,7 +144,7 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
       RunCommand({"sh", "-c", Program("fogline-relay") + " --listen 127.0.0.1:0 > /dev/full"});
   EXPECT_EQ(unwritten.code, 3);
   EXPECT_THAT(unwritten.err, HasSubstr("cannot write the URL: No space left on device"));
-  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  // RFC 5737 reserves 203.0.113.0/24 for examples, so no machine has an address of it.
   const Outcome foreign = RunCommand({Program("fogline-relay"), "--listen", "203.0.113.7"});
   EXPECT_EQ(foreign.code, 2);
   EXPECT_THAT(foreign.err, HasSubstr("203.0.113.7 is no address of this machine"));
@@ -301,8 +301,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // Three channels differ. Our log has only one RUN message, in another phase. It also has a
-    // graph and a seal, which no process sends.
+    // The test leaves out three channels. On RUN, our log has only one message, in another phase.
+    // The graph and the seal are only in our log, because no process sends them.
     if (channel == ChannelOf<run_t>().name || channel == log::kLogGraphChannel ||
         channel == log::kLogSealChannel) {
       continue;

@@ -36,8 +36,8 @@ with fl.Live() as live:
 class LiveTest : public testing::Test {
  protected:
   /// Expects that a listener without a URL gets each step of a run with the options `of_run`. The
-  /// driver of the run gets the options `of_driver`. It starts only after the listener has joined
-  /// the network of the run, and the run does not begin without it.
+  /// driver of the run gets the options `of_driver`. The run waits for its driver, and the driver
+  /// starts only after the listener has joined the network of the run.
   void ExpectHears(const std::vector<std::string>& of_run,
                    const std::vector<std::string>& of_driver = {}) {
     std::vector<std::string> listener = Python(WriteScript(folder_, kListener), {});

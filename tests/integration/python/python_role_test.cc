@@ -29,7 +29,8 @@ std::string BlockWith(const std::string& text, const std::string& page) {
   return page.substr(begin, page.find("```", begin) - begin);
 }
 
-// Answers each step with the message in a log, and expects that the inputs equal those in the log.
+// A role in Python that answers each step with the message of this step in a log. It fails if an
+// input differs from the input in the log.
 constexpr const char* kReplayed = R"(
 import sys
 import fogline_lab as fl

@@ -39,9 +39,10 @@ struct BurstPlan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// The time from the end of the losses until the role was in time. A role is in time if it
-/// publishes a step within a period after the world began the step. The world is in time if it
-/// begins a step within two periods after the step before.
+/// The time from the end of a burst until a role was in time again; no value if it was not. A role
+/// is in time if it publishes a step within a period after the world began the step. The world is
+/// in time if it begins a step within two periods after the step before. The recorder is in time if
+/// it has written a step that began after the burst.
 struct BackAfterBurst {
   Role role;
   std::optional<double> after_s;
@@ -99,8 +100,8 @@ class BurstListener {
       bus_->Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
         const auto* status = arrival.As<status_t>();
         if (status == nullptr || status->role != NameOf(Role::kRecorder)) return;
-        // The recorder does not send STATUS in every period. So the recorder counts as back if its
-        // last written step began after the burst.
+        // The recorder does not send STATUS in every period. So the recorder counts as back if the
+        // last step that it has written began after the burst.
         if (began_.contains(status->header.step)) back_.try_emplace(Role::kRecorder, Clock::now());
       });
     });
@@ -258,7 +259,8 @@ class BurstRun {
   BurstListener listener_;
 };
 
-/// Executes plans, several at the same time, because a run waits for most of its time.
+/// Executes plans, `at_once` of them at the same time. This is possible because a run waits for
+/// most of its time.
 inline std::vector<PlayedBursts> PlayAll(std::deque<BurstPlan> plans, unsigned at_once) {
   std::vector<PlayedBursts> results;
   std::mutex mutex;
@@ -288,7 +290,7 @@ inline std::vector<PlayedBursts> PlayAll(std::deque<BurstPlan> plans, unsigned a
 /// The figures of one kind of burst at one rate.
 struct BurstFigures {
   int bursts = 0;
-  int back = 0;  // bursts after which every role was back within the limit
+  int back = 0;  // bursts after which every role was in time again within the limit
   double longest_s = 0;
 };
 

@@ -42,7 +42,7 @@ class Listener {
     while (step_ < step && Clock::now() < end) bus_->Wait(milliseconds(20));
     return step_ >= step;
   }
-  /// Whether a process exists until the runner sends STOP.
+  /// Whether a process still exists when the runner sends STOP.
   bool LivesUntilStop(pid_t process) {
     const TimePoint end = Clock::now() + kPatience;
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
@@ -74,7 +74,8 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
         Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kLossyRunRate_hz), "--set",
              "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
-  /// Makes the network lose everything for this time. Some tests need a certain length of the loss.
+  /// Makes the network lose everything for this time. The time is fixed, because some tests need a
+  /// loss of a certain length.
   void LoseEverythingFor(Duration time) const {
     machine_->LoseUdp(100);
     std::this_thread::sleep_for(time);
@@ -109,10 +110,11 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder receive and send until the end. The log may lack only messages near
-  // the end. An ACC_COMMAND comes only if six messages of its step arrive, one after another. So
-  // the log has about one in eight: none of the last 50 steps in one of a thousand runs, and none
-  // of the last 150 steps in one of a hundred million.
+  // Every role and the recorder receive and send until the end. So each channel must have a message
+  // near the end: in the last 50 steps, or in the last 150 steps for ACC_COMMAND. An ACC_COMMAND
+  // comes only if six messages of its step arrive, one after another, so the log has about one in
+  // eight. In one of a thousand runs the log has none of the last 50 steps, and in one of a hundred
+  // million runs it has none of the last 150 steps.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
@@ -145,8 +147,8 @@ TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
   Background run(RealtimeRun(8 * kLossyRunRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kLossyRunRate_hz)) << run.Err();
-  // A second has 50 steps. The recorder asks only for the last 32 steps again, so the log lacks
-  // steps.
+  // In this second the world begins 50 steps. The recorder asks again only for the last 32 steps,
+  // so the log lacks steps.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));

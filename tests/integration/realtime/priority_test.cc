@@ -103,8 +103,8 @@ TEST(PriorityInRealtimeTest, IsMissedByARoleThatAPersonHasStarted) {
   std::vector<std::string> command = WithoutPriority();
   command.insert(command.end(), {Program("fogline-driver"), "--lcm-url", url});
   Background driver(command);
-  // Without the priority the driver may be late. At this speed the recorder can ask for its
-  // messages for 3.2 s.
+  // Without the priority the driver may be late. This does no harm, because the recorder can ask
+  // again for the driver's messages of the last 32 steps. At this speed these steps take 3.2 s.
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
                                   "--set", "/steps=60", "--lcm-url", url, "--external", "driver",
                                   "--log", folder.File("run.lcm")});

@@ -70,19 +70,21 @@ inline FaultPlan PlanOf(const Fault& fault) {
     // On a busy machine the fault may come up to 2 s (100 steps) late.
     plan.steps = plan.fault_step + 100 + kManoeuvre;
   } else if (fault.role == "driver") {
-    // The human is needed some 20 steps after the fault. This is 13 steps after the beginning of
-    // the fog in paper, and 120 steps after the beginning in dense_fog. A stopped process is
-    // missing for 50 steps.
+    // The human is needed some 20 steps after the fault, while the driver is still missing: a
+    // stopped process is missing for 50 steps. In scenario paper this time is 13 steps after the
+    // beginning of the fog, and in dense_fog 120 steps after it.
     const bool dense = fault.scenario == "dense_fog";
     plan.fault_step = dense ? 100 : 60;
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
     // The recorder counts as hung after one second without a message from it. At this speed a
-    // second has 20 steps. The other roles keep more steps than these for the recorder.
+    // second has 20 steps. The other roles keep the messages of more than 20 steps for the
+    // recorder.
     plan.speed = 2;
   } else if (fault.role != "world") {
-    // The automation must be back at the end. A busy machine starts a process late.
+    // The automation must drive again at the end, even if a busy machine starts the new process
+    // late.
     plan.settings = {"/fog/start_s=60"};
     plan.steps = 240;
   }
@@ -171,8 +173,8 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   JudgeWithoutAutomation(log, silence, loss->step);
 }
 
-/// Whether a role missed the messages of a role that did not fail. This happens if a busy machine
-/// executes a process too late. The run then does not show the effect of the fault.
+/// Whether a role missed messages of another role than the one that failed. This happens if a busy
+/// machine executes a process too late. The run then does not show the effect of the fault.
 inline bool IsDisturbed(const nlohmann::json& realtime, const std::string& failed) {
   return std::ranges::any_of(realtime["fallbacks"], [&](const nlohmann::json& fallback) {
     return fallback["culprit"].is_string() && fallback["culprit"] != failed &&

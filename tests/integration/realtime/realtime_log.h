@@ -71,7 +71,8 @@ struct Log {
     return misses;
   }
 
-  /// The first STATUS, from a given step on, that reports a lost channel.
+  /// What the first STATUS that reports a lost channel says. The search begins at a given step, and
+  /// leaves out the STATUS of the recorder.
   struct Loss {
     std::int64_t step;  // the current step of the run
     std::string reporter;
@@ -147,7 +148,7 @@ inline Car Follower(const truth_t& truth) {
 /// which messages exist. The process reports how many messages were late.
 class Obedience {
  public:
-  /// @param role the role that obeys
+  /// @param role the role of this process
   Obedience(const Log& log, const std::string& role) : role_(role), misses_(log.MissesOf(role)) {}
   ~Obedience() {
     EXPECT_LE(late_, misses_) << role_ << " does not say how often it was not in time";

@@ -60,9 +60,9 @@ class RealtimeRun {
     const std::string folder = "/proc/" + std::to_string(pids_.at(role)) + "/task";
     return std::distance(std::filesystem::directory_iterator(folder), {});
   }
-  /// The age of the world's last message in the first STATUS that calls the world lost, as the
-  /// sender of this STATUS measured it, without its own pauses. The result is nullopt if the world
-  /// comes back before such a STATUS.
+  /// Waits for the first STATUS that calls the world lost. @return the age of the world's last
+  /// message in this STATUS, as its sender measured it, without the sender's own pauses; nullopt if
+  /// the world comes back before such a STATUS
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);

@@ -44,7 +44,8 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
   // If the machine executes no process for half a period, the run is disturbed and proves nothing.
-  // So the test tries several runs. Most such pauses are shorter than half of a period of 50 ms.
+  // So the test tries several runs. A period is 50 ms here, and most such pauses of a machine are
+  // shorter than 25 ms.
   constexpr int kTries = 5;
   constexpr double kSlowly = 2;
   for (int i = 0; i < kTries; ++i) {
@@ -118,7 +119,7 @@ std::set<std::int64_t> StepsIn(const std::string& log) {
 TEST(RealtimeTest, EachRoleKeepsABacklog) {
   RealtimeRun run("scenario/paper.json", 300);
   run.WaitForStep(60);
-  // A thread of the role takes the messages out of the kernel's buffer.
+  // A second thread of each role takes the messages out of the kernel's buffer.
   for (const RoleInfo& role : kRoles)
     EXPECT_GE(run.Threads(std::string(role.name)), 2) << role.name;
   EXPECT_EQ(run.Finish()["steps"], 300);

@@ -89,9 +89,9 @@ inline void ExpectRunUnderLoadMissesNothing(int rate_hz, double seconds) {
   const auto memory = MemoryIn(log);
   EXPECT_EQ(memory.size(), kRoles.size());
   for (const auto& [role, bytes] : memory) {
-    // The memory may still grow by kFlat after bytes[first]. At bytes[first] a role has used all of
-    // its code and data, but LCM's ring of received datagrams (200 KiB) may have pages that were
-    // never touched.
+    // After bytes[first] the memory may still grow by kFlat. At bytes[first] a role has used all of
+    // its code and data. But LCM's ring of received datagrams (200 KiB) may have pages that the
+    // role has not used yet.
     constexpr std::int64_t kFlat = 512 * 1024;
     const std::size_t first = std::max<std::size_t>(10, bytes.size() / 10);
     ASSERT_GT(bytes.size(), first + 1) << role;

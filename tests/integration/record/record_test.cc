@@ -214,7 +214,7 @@ TEST_F(RecordTest, EndsWithOneErrorAndAValidLogIfTheDiskIsFull) {
   const std::string err = record->process().Err();
   EXPECT_THAT(err, HasSubstr("fogline record: error: cannot write to " + log_));
   EXPECT_EQ(err.find("error"), err.rfind("error")) << err;
-  // The log has as many whole messages as fit: an event has 35 bytes besides its data.
+  // The log has as many whole events as fit. Each event has 700 bytes of data and 35 other bytes.
   EXPECT_EQ(MessagesIn(log_).size(), 100'000U / 735);
 }
 
@@ -251,7 +251,7 @@ TEST_F(RecordTest, OfASignedRunIsExportedLikeAnyOther) {
 }
 
 TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
-  // GIVEN a recording without a network, at a meeting address of its own
+  // GIVEN a recording that gets no URL, only a meeting address that no other test has
   const std::string meeting = runtime::FreshMulticastUrl();
   Background record({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "record", log_,
                      "--json", "--flush-ms", "10"});
@@ -283,7 +283,8 @@ TEST_F(RecordTest, GoesOnWhenTheRelayOfAFollowedRunHasEnded) {
   EXPECT_TRUE(record.WaitForErr("follows run "));
   run.Signal(SIGINT);
   ASSERT_EQ(run.Wait(), 130) << run.Err();
-  // The relay of the run ends with the run. The recording tries to connect for some time.
+  // The relay of the run ends with the run. The recording tries for some time to connect to the
+  // relay again, and then leaves it.
   EXPECT_TRUE(record.WaitForErr("leaves tcpq://")) << record.Err();
   runtime::Bus(meeting).Publish("AFTERWARDS", Payload(1, 4));
   record.Signal(SIGINT);

@@ -1,4 +1,4 @@
-// The command line of a run of the paper's scenario. The test uses the network of this run.
+// The command line of a run of the paper's scenario, at a URL that the test chooses.
 #pragma once
 
 #include <string>

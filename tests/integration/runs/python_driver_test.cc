@@ -89,7 +89,7 @@ class PythonDriverTest : public testing::Test {
     return command;
   }
 
-  /// The result of a run with this driver, which ends with the run.
+  /// Makes a run with this driver. The driver must end with the run. @return the result of the run
   nlohmann::json RunWith(const Words& driver, const Words& more = {}) {
     Background external(driver);
     EXPECT_TRUE(external.WaitForOut("waiting for a run")) << external.Err();

@@ -66,7 +66,7 @@ TEST_F(RecordedLeadTest, IsFollowedFor700SecondsInClearAirWithoutACollision) {
 }
 
 TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
-  // Fog from 300 s to 400 s of the recording. The run begins at 200 s of the recording.
+  // The fog lasts from 300 s to 400 s of the recording. The run begins at 200 s of the recording.
   const ScratchFolder folder;
   std::vector<std::string> more{"--transport", "udpm", "--log", folder.File("fog.lcm")};
   more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
@@ -77,8 +77,8 @@ TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
 }
 
 TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsTimeGap) {
-  // GIVEN an ACC with the time gap and standstill distance of a straight line fitted to the real
-  // car's gaps
+  // GIVEN an ACC with the time gap and the standstill distance of the real car. They come from a
+  // straight line that was fitted to the gaps of this car
   const ScratchFolder folder;
   Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",
        "--set", "/acc/standstill_m=6.5", "--set", "/world/host_speed_mps=17.68", "--set",
@@ -97,7 +97,7 @@ TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsTimeGap) {
 }
 
 TEST_F(RecordedLeadTest, TravelsWithTheScenarioSoThatOtherMachinesNeedNoFile) {
-  // The 7,000 speeds travel over LCM in parts. The digest is that of a run in one process.
+  // The 7,000 speeds travel over LCM in parts. The digest must equal that of a run in one process.
   const ScratchFolder folder;
   const auto digest = [&](const std::string& transport) {
     const Outcome outcome =

@@ -110,8 +110,8 @@ TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
                     {"--transport", "memq", "--set", "/steps=" + std::to_string(steps),
                      "--stall-timeout", "1"})["wall_s"];
   };
-  // WHEN the run gets longer and longer, until it takes longer than the timeout, THEN each of these
-  // runs succeeds
+  // WHEN the runs get longer and longer, until one takes longer than the stall timeout of 1 s, THEN
+  // each of them succeeds
   int steps = 100'000;
   while (seconds(steps) < 1.2) steps *= 2;
 }

@@ -293,8 +293,9 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
 TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const Elsewhere elsewhere;
   std::string err;
-  // At the end of the run, a busy machine may have given another role no processor for a second.
-  // Then this role is named, and the test tries again.
+  // The error must say that the arbitrator waits for the driver. If a busy machine gave another
+  // role no processor for a second at the end of the run, the error may name this other role. Then
+  // the test tries again.
   constexpr int kTries = 3;
   const auto names_another = [&err] {
     return err.find("is silent (last heard") != err.npos ||

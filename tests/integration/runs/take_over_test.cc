@@ -20,8 +20,8 @@ using ::testing::StartsWith;
 
 class TakeOverRunTest : public testing::Test {
  protected:
-  /// A run with dense fog from 1 s to 5 s. The driver takes over 2 s after the request, or never.
-  /// The car begins to stop 10 s after its request.
+  /// A run with dense fog from 1 s to 5 s. The driver takes over 2 s after the request, or never if
+  /// `absent`. Without the driver, the car begins to stop 10 s after the request.
   nlohmann::json Run(const std::string& transport, bool absent,
                      const std::string& policy = "traded") const {
     return RunOn(transport, "scenario/dense_fog.json", Log(transport),

@@ -70,7 +70,7 @@ TEST_F(TrafficTest, IsMeasuredCarByCarFromTheLogAlone) {
   EXPECT_EQ(followers[0]["max_compromised_safety_m"], run["metrics"]["max_compromised_safety_m"]);
   for (const auto& follower : followers) {
     EXPECT_GT(follower["min_gap_m"], 0);
-    // A car that never approaches the car ahead has no time to collision.
+    // A car that never approaches the car ahead has no time to collision, so the value is null.
     if (!follower["min_ttc_s"].is_null()) {
       EXPECT_GT(follower["min_ttc_s"], 0);
     }
@@ -201,13 +201,14 @@ TEST_F(CompareTest, GivesTheRootMeanSquareOfBothDifferences) {
   const Outcome outcome = Compare({Recording(), "--json", "--out", folder_.File("both.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  // Noise of 1 mm in the sensors moves the host by less than this distance, in m.
+  // The sensors have a noise of 1 mm. It moves the host by less than this distance, in m.
   constexpr double kNoise = 0.02;
   EXPECT_EQ(json["steps"], 41);
   EXPECT_NEAR(json["speed_rmse_mps"], 1, kNoise);
   EXPECT_NEAR(json["speed_spread_mps"], 0, kNoise);
   EXPECT_NEAR(json["gap_rmse_m"], 3, kNoise);
-  // 20 steps of +3 m and 21 of -3 m have a mean of -3/41 m, so the spread is 0.001 m below 3 m.
+  // The gaps differ by +3 m in 20 steps and by -3 m in 21 steps. So the mean difference is -3/41 m,
+  // and the spread around this mean is 0.001 m below 3 m.
   EXPECT_NEAR(json["gap_spread_m"], 3, kNoise);
   EXPECT_NEAR(json["largest_gap_difference_m"], 3, kNoise);
   EXPECT_NEAR(json["recorded_mean_gap_m"], (20 * 30 + 21 * 36) / 41.0, 1e-9);

@@ -21,8 +21,8 @@
 namespace fogline::test {
 namespace {
 
-/// A claim that docs/findings.md lists below a finding. Its line is like: - policy: "It helps." 12
-/// mm, margin 2 mm
+/// A claim that docs/findings.md lists under a finding. Its line looks like this: - policy: "It
+/// helps." 12 mm, margin 2 mm
 struct ListedClaim {
   std::string finding;  // its number
   std::string part;     // "heading" or "side claims"

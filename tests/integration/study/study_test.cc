@@ -54,8 +54,8 @@ std::map<std::string, int> CountByMeasure(const std::string& csv) {
   return counts;
 }
 
-/// Expects that the page of the conflict study says that its delays are not deception_to_alarm_s, a
-/// measure of a run.
+/// Expects that the page of the conflict study explains its delays: they run from the fog to the
+/// alarm, and are not the measure deception_to_alarm_s of a run.
 void ExpectDelaysFromFogToAlarm(const std::string& page) {
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
   EXPECT_THAT(page, HasSubstr("This delay is not deception_to_alarm_s of a run"));
@@ -101,8 +101,8 @@ void ExpectAtMostThreeSentencesWithoutNumbers(const std::string& answer) {
       << answer;
 }
 
-/// Expects that no claim has the state "holds". @return the number of claims for which a single run
-/// is too little
+/// Expects that no claim has the state "holds". @return the number of claims that say that there
+/// are too few runs for an interval
 std::size_t OpenClaims(const nlohmann::json& claims) {
   for (const auto& claim : claims) EXPECT_NE(claim["state"], "holds") << claim;
   return static_cast<std::size_t>(std::ranges::count_if(

@@ -1,4 +1,4 @@
-// The options of the configuration of the build.
+// The options with which CMake configures the build.
 #include <fstream>
 #include <sstream>
 #include <string>

@@ -1,5 +1,5 @@
-// tools/demo asks for what it needs, and names commands and files that exist. Here it uses the
-// programs of this build, and installs and compiles nothing.
+// tools/demo calls tools/setup and tools/build for what it needs, and names commands and files that
+// exist. In these tests it uses the programs of this build, and installs and compiles nothing.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -105,7 +105,7 @@ TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
   EXPECT_EQ(NamedAs("report", demo.out), "logs/demo/report.html");
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "logs/demo/report.html"));
   EXPECT_THAT(demo.err, HasSubstr(kPageNotice));
-  // The last build failed, so the demo does not name a program that is missing.
+  // The last build failed, so the program of the view is missing, and the demo must not name it.
   EXPECT_EQ(NamedAs("view", demo.out), "");
 }
 
@@ -119,7 +119,7 @@ TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
   Background second(folder.Typed("tools/demo"));
   EXPECT_TRUE(second.WaitForErr("waiting for another tools/demo in this folder ..."));
   EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\ntools/build fogline_run\n");
-  // The second one begins when the first one has ended.
+  // The second demo must begin only after the first demo has ended.
   folder.Write("setup", "[ ! -e page ] || echo after the page >>calls");
   std::ofstream(folder.path() / "go") << "";
   for (Background* demo : {&first, &second}) {

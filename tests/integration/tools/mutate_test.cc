@@ -16,12 +16,12 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kMutations = 150;  // the smallest number of mutations of a list
+constexpr int kMutations = 150;  // a list must have at least so many mutations
 
 class MutateTest : public testing::Test {
  protected:
   /// Makes a tree whose function V0 has a unit test, and whose function V1 has a property test. The
-  /// other functions have no tests. Each function has a mutation, which names the unit test.
+  /// other functions have no tests. Each function has a mutation. All mutations name the unit test.
   MutateTest() {
     std::filesystem::create_directories(folder_.path() / "tests");
     std::filesystem::copy(SourceDirectory() / "tests/mutations",

@@ -47,7 +47,8 @@ class RecipesTest : public testing::Test {
                                               folder_.path() / "scenario");
   }
 
-  /// The recipe in which `with` is. The run has 60 steps and a log, and uses the port of this test.
+  /// The recipe that contains the text `with`. Its run has 60 steps and a log, and uses the port of
+  /// this test.
   std::string Recipe(const std::string& with) const {
     const std::string page = Content(SourceDirectory() / "docs/network.md");
     for (const Block& block : BlocksOf(page.substr(page.find("\n## Recipes\n")))) {
@@ -74,8 +75,8 @@ class RecipesTest : public testing::Test {
 };
 
 TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
-  // GIVEN the lines of the page, and a player that waits until the three programs listen. This
-  // test has a socket on the port, too
+  // GIVEN the lines of the page, and a player that waits until three programs listen. Then the port
+  // has four sockets, because this test has a socket on the port, too
   std::string lines = Recipe("lcm-logplayer");
   char port[8];
   std::snprintf(port, sizeof(port), "%04X", std::stoi(port_));
@@ -84,8 +85,8 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
                        " ' /proc/net/udp) -ge 4 ]; do sleep 0.02; done\nlcm-logplayer");
   // AND a speed at which lcm-logger loses fewer messages on a busy machine
   lines = Replaced(lines, "--speed=4", "--speed=1");
-  // AND a wait for the whole log. lcm-logger writes messages some time after they arrive, and drops
-  // messages that are not written when it ends
+  // AND a wait for the whole log. lcm-logger writes messages some time after they arrive. When it
+  // ends, it drops the messages that it has not written yet
   lines = Replaced(lines, "kill $(jobs -p)",
                    "for i in $(seq 200); do"
                    " [ $(grep -ao ACC_COMMAND open.lcm | wc -l) -lt 60 ] || break; sleep 0.02;"
@@ -96,8 +97,8 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
     const auto recorded = MessagesOf(folder_.File("run.lcm"), channel);
     const auto again = MessagesOf(folder_.File("open.lcm"), channel);
     EXPECT_EQ(recorded.size(), 60U);
-    // lcm-logger may lose messages. It loses the newest ones of more than 30 that it has not
-    // handled.
+    // lcm-logger may lose messages: if more than 30 messages wait for it, it loses the newest of
+    // them.
     EXPECT_GT(again.size(), 10U) << shell.out << shell.err;
     for (const auto& [step, message] : again) EXPECT_EQ(message, recorded.at(step)) << step;
   }

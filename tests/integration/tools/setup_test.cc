@@ -118,7 +118,7 @@ TEST_F(SetupTest, InstallsPackagesThatOnlyTestsUseOnlyForTests) {
 }
 
 TEST_F(SetupTest, InstallsAgainAfterAnInterrupt) {
-  // GIVEN an incomplete installation, because setup is killed while npm installs
+  // GIVEN an incomplete installation: npm kills setup in the middle of its work
   std::filesystem::copy_file(File("bin/npm"), File("tmp/npm"));
   Write("npm", "[ $1 = ci ] || exit 0; mkdir -p node_modules/chart; kill -KILL $PPID");
   EXPECT_EQ(Setup().code, 128 + 9);

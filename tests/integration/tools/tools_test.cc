@@ -82,7 +82,8 @@ TEST(ToolsTest, SetupNeedsOnePurpose) {
   }
 }
 
-/// A folder with tools/build, which is configured, and with its own `ninja`.
+/// A folder with tools/build, with a configured build, and with a program `ninja` that the test
+/// makes.
 class BuildFolder {
  public:
   explicit BuildFolder(const std::string& ninja) {
@@ -129,15 +130,15 @@ TEST(ToolsTest, BuildNamesATargetThatIsNotThere) {
 }
 
 TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor) {
-  // GIVEN a ninja that begins the line of its first command as it is told, and then reports an
-  // error of the compiler
+  // GIVEN a ninja that prints the line of its first command in the form that NINJA_STATUS demands,
+  // and then an error of the compiler
   const BuildFolder folder(
       "echo \"$NINJA_STATUS\" | sed 's/%f/1/; s/%t/2/; s/$/a.o/'\n"
       "echo 'b.cc:1: error: mistake'\nexit 1");
   const Outcome outcome = RunCommand(folder.Command());
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "");
-  // On a busy machine the time left may follow.
+  // On a busy machine the first line may also show the time left.
   EXPECT_THAT(outcome.err,
               testing::MatchesRegex("building: 1 of 2[^\n]*\nb.cc:1: error: mistake\n"));
 }
@@ -172,13 +173,14 @@ TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
        "printf '@1 40 a.cc\\n@20 40 b.cc\\nb.cc:1: error\\n@40 40\\n' | tools/progress building"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out, "b.cc:1: error\n");
-  // A time left may follow on a busy machine.
+  // On a busy machine a line may also show the time left.
   EXPECT_THAT(outcome.err,
               testing::MatchesRegex("building: 1 of 40(, 0:[0-9][0-9] left)?\nbuilding: 20 of "
                                     "40[^\n]*\nbuilding: 40 of 40[^\n]*\n"));
 }
 
-// The time left is known after two seconds. On a busy machine the reader may start later.
+// tools/progress shows the time left only after two seconds. This work takes four seconds, because
+// on a busy machine tools/progress may start late.
 constexpr const char* kHalfOfIt = "{ echo @1 40; sleep 4; echo @20 40; } | tools/progress building";
 
 TEST(ToolsTest, SayHowLongLongWorkTakesYet) {

@@ -86,9 +86,11 @@ class CalibrateTest : public testing::Test {
   }
 };
 
-// A search ends when every number of the table is within 0.001 points of the target. Here 1 % of
-// the offset's range moves the table by only 0.07 points. So the search finds a field within a few
-// thousandths of its range: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the headway.
+// The share of a field's range by which the search may miss the true value: 0.4 mm for the offset,
+// 1.5 mm for the fog's bias, 4 ms for the headway. A search ends when every number of the table is
+// within 0.001 points of the target. At that moment a field may still be a few thousandths of its
+// range away, because it moves the table only a little: 1 % of the offset's range moves the table
+// by 0.07 points.
 constexpr double kShareOfRange = 5e-3;
 
 TEST_F(CalibrateTest, RecoversTheFogAndTheOffsetBetweenTheSensors) {
@@ -107,7 +109,8 @@ TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
   const json found = Calibrate(
       {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
   EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
-  // The range has three decades on a logarithmic scale, so kShareOfRange means a factor of 1.035.
+  // The range goes from 0.1 to 100, three decades on a logarithmic scale. So kShareOfRange of this
+  // range means a factor of 1.035.
   EXPECT_NEAR(found["fields"][1]["value"], 3, 0.035 * 3);
 }
 

@@ -142,8 +142,9 @@ TEST(ConsoleTest, AnErrorIsNotWaitedForWithoutEnd) {
 }
 
 TEST(ConsoleTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
-  // Before and after the run, a write of the shell to the pipe blocks until the pipe has room: the
-  // run has not set O_NONBLOCK.
+  // The shell writes to the same pipe as the run. After the run, the pipe must not have the flag
+  // O_NONBLOCK. With this flag, a write of the shell would not wait for room in a full pipe, but
+  // fail.
   const ScratchFolder folder;
   const Outcome outcome =
       RunCommand({"bash", "-c",

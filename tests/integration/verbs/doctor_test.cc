@@ -200,7 +200,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
   std::string heard;
-  do {  // doctor listens for a second. A busy machine may give a role no processor for this time
+  do {  // on a busy machine a role may send nothing during the second for which doctor listens
     doctor = Doctor(lab[1], kEverywhere);
     ASSERT_LE(doctor.code, 1) << doctor.out << doctor.err;
     heard = Find(json::parse(doctor.out)["findings"], "check", "other_runs")["what"];

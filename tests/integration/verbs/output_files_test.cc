@@ -120,7 +120,7 @@ TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
   EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
   EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
   // Descriptor 9 keeps the pipe open for reading and writing. So `head` would find no end of the
-  // file; the command tells it how many bytes to read.
+  // file, and the command tells `head` how many bytes to read.
   EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
                  "head -c $(stat -c %s page.html) <&9 > named; wait $report")
                 .code,
@@ -234,8 +234,9 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
     ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();
     std::this_thread::sleep_for(milliseconds(20));
   }
-  // No event shows that the sweep has come to this write. But then none of its threads is ready to
-  // run for long.
+  // No event shows that the sweep has come to this write. So the test looks at the threads of the
+  // sweep again and again. If all of them sleep at kLooks looks in a row, the sweep waits in its
+  // write.
   constexpr int kLooks = 50;
   for (int asleep = 0; asleep < kLooks;) {
     ASSERT_LT(std::chrono::steady_clock::now(), end) << sweep.Err();

@@ -12,8 +12,8 @@ mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# Prints the peak resident memory in KiB. The policy lets only the automation drive, so each row is
-# one run.
+# Prints the peak resident memory, in KiB, of a sweep of $1 runs. Each row is one run, because the
+# policy lets only the automation drive.
 peak() {
   /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
     --set /arbitrator/policy=none --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2

@@ -289,7 +289,8 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
   const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
   const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
   const std::string rows = Made("rows.csv", kShort + cars + axis);
-  // After the grid's value, a row has the cells of a sweep of the same cars without a grid.
+  // A row has the value of the grid. After it, the row has the same cells as a sweep of the same
+  // cars without a grid.
   const Words aggressive{
       "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
       "--seeds", "1:1"};
@@ -306,8 +307,8 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
-  // GIVEN two values of the weight of the distance. With the second value the problem of the ACC is
-  // ill-conditioned
+  // GIVEN two values of the weight of the distance. With the second value the optimisation problem
+  // of the ACC is ill-conditioned
   const Words sweep = kShort + Words{"--set",   "/step_s=1",
                                      "--set",   "/acc/horizon_steps=60",
                                      "--set",   "/acc/headway_s=0",

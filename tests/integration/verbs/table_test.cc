@@ -50,7 +50,7 @@ TEST(TableTextTest, EndsWithSafetyByOtherFloorsAndReadings) {
       RunCommand({Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("(/measures/safety_floor_m, 0.01 m)"));
-  // The floor of the scenario is 10 mm, so the value with this floor equals SI.
+  // The scenario has a floor of 10 mm, so the value for floor_10mm equals SI.
   const nlohmann::json row = TableRows({"--thresholds", "0.5"})[0];
   EXPECT_EQ(row["other_si_pct"]["floor_10mm"], row["si_pct"]);
   EXPECT_EQ(row["other_si_pct"].size(), 7U);
@@ -101,7 +101,7 @@ TEST(TableOverSeedsTest, IsTheSameForAnyNumberOfRunsAtOnce) {
   }
 }
 
-/// The processes of the role world of all runs of a table that are under way.
+/// The world processes of all runs of a table that are under way.
 std::vector<pid_t> WorldsOf(const Background& table) {
   std::vector<pid_t> worlds = ChildrenOfAnyThread(table.pid());
   std::erase_if(worlds, [](pid_t child) {

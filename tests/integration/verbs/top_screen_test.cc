@@ -240,7 +240,7 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   ASSERT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
   EXPECT_THAT(top.screen().rows()[23], HasSubstr("q quit"));
   EXPECT_TRUE(top.Shows("the automation drives"));
-  // AND the senders have no room once a message of each channel has come
+  // AND the table of senders has no room on the screen once a message of each channel has come
   EXPECT_TRUE(top.WaitUntil([&] {
     return top.screen().Text().find("senders, by") == std::string::npos;
   })) << top.screen().Text();

@@ -140,7 +140,8 @@ TEST(TopTest, LooksAtARelayToo) {
 }
 
 TEST(TopTest, ShowsALogThatLogplayerPlays) {
-  // The kernel's buffer holds all messages of so few steps, even if top gets no processor.
+  // So few steps that the kernel's buffer holds all their messages, even if top gets no processor
+  // time.
   constexpr int kSteps = 12;
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
@@ -240,8 +241,8 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
                                                                       &lcm_destroy);
-  // From each burst, top receives at least the messages that a small socket holds, some 250 names.
-  // If top has a processor to itself, top receives all messages.
+  // From each burst, top receives at least the messages that fit into a small socket buffer, some
+  // 250 names. If top has a processor to itself, it receives all messages.
   constexpr int kNames = 4000;
   constexpr int kEnough = 50'000;  // 10 MB of names
   int invented = 0;

@@ -145,7 +145,7 @@ TEST_F(ViewAccessTest, TurnsAway65thClient) {
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
   EXPECT_TRUE(process().WaitForErr("64 viewers are connected already"));
   clients.pop_back();
-  // The place becomes free when the server has noticed the end of the connection.
+  // The server gives the place to another client when it has noticed the end of the connection.
   const TimePoint end = Clock::now() + milliseconds(20'000);
   int status = 503;
   while (status != 101 && Clock::now() < end) status = StatusOfSocket({});
@@ -161,8 +161,8 @@ TEST_F(ViewAccessTest, EndsAtOnceWithCtrlC) {
   const TimePoint began = Clock::now();
   process().Signal(SIGINT);
   EXPECT_EQ(CloseCodeOf(clients.front()), 1001);
-  // The other clients do not answer the closing frame. The program does not wait for their answers,
-  // for which it would have a limit of 10 s.
+  // The other clients do not answer the closing frame. The program must not wait for their answers.
+  // If it waited, it would end only after its time limit of 10 s.
   EXPECT_EQ(process().Wait(), 0);
   EXPECT_LT(Clock::now() - began, milliseconds(9000));
 }
@@ -178,7 +178,7 @@ TEST_F(ViewAccessTest, SaysThatAPortIsBusy) {
 }
 
 TEST(ViewTokenTest, ListensOnlyOnAnAddressOfThisMachine) {
-  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  // RFC 5737 reserves 203.0.113.0/24 for examples, so no machine has an address of it.
   const Outcome outcome = RunCommand({Program("fogline"), "view", "--no-browser", "--listen",
                                       "203.0.113.7", "--lcm-url", "udpm://cannot.be.opened"});
   EXPECT_EQ(outcome.code, 2);

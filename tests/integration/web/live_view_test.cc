@@ -138,8 +138,9 @@ TEST(LiveViewTest, GivesALateClientTheRunAndItsHistory) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   WebClient client(viewed.port());
   EXPECT_EQ(ReceiveOp(client, "run")["steps"], 60);
-  // On a busy machine the last messages of the run may come to the program, and to the client, only
-  // now. So they may come before the frames of the history. Then the client asks again.
+  // On a busy machine the last messages of the run may reach the program, and then the client, only
+  // now. So these messages may come before the frames of the history. Then the client asks for the
+  // history again.
   constexpr std::size_t kMessages = 60 * 9;
   constexpr int kTries = 10;
   Got got;

@@ -60,7 +60,7 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());
   ReceiveOp(client, "hello");
-  // Beside it: a viewer whose relay answers.
+  // For comparison, the test also has a viewer whose relay answers.
   Relay answering;
   Viewed beside({"--lcm-url", answering.url()});
   ASSERT_NE(beside.port(), 0) << beside.process().Err();
@@ -83,19 +83,18 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
       took_s.push_back(answer_s(client));
       reference_s.push_back(answer_s(reference));
       std::this_thread::sleep_for(
-          milliseconds(70));  // so that the requests meet all phases of a try
+          milliseconds(70));  // so that the requests meet all phases of a try to connect
     }
     return median_s(took_s) - median_s(reference_s);
   };
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
-  // In place of the relay: a socket that accepts connections and never answers.
+  // The relay is replaced by a socket that accepts connections and never answers.
   asio::io_context context;
   const asio::ip::tcp::acceptor silent(context, {asio::ip::address_v4::loopback(), relay.port()});
   // If each try to connect blocked the program for 200 ms, most answers would come only after the
-  // try.
-  // The load of the machine may change meanwhile, so the test measures again. A program that is
-  // blocked is slower in each round.
+  // try. Other programs may also make the answers slow, so the test measures in several rounds. A
+  // program that is blocked is slow in each round.
   constexpr int kRounds = 5;
   double slower_s = 1;
   for (int i = 0; i < kRounds && slower_s >= 0.03; ++i) slower_s = slower();

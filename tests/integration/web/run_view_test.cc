@@ -155,7 +155,7 @@ TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
   const std::size_t said = run.err.find("--view: cannot start");
   ASSERT_NE(said, std::string::npos) << run.err;
   EXPECT_EQ(run.err.find("--view", said + 1), std::string::npos) << run.err;
-  // The folder is no build folder, so the run does not say how the program is built.
+  // The folder is no build folder, so the run does not say how to build fogline-web.
   EXPECT_THAT(run.err, HasSubstr("fogline-web: No such file or directory; the run goes on"));
 }
 

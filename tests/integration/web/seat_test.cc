@@ -77,7 +77,7 @@ TEST_F(SeatPageTest, APageSeesTheRunAndNothingElse) {
   for (const json& channel : hello["channels"]) channels.insert(channel["name"]);
   EXPECT_EQ(channels, (std::set<std::string>{"TRUTH", "DRIVER_COMMAND", "HOST_COMMAND"}));
   EXPECT_FALSE(hello.contains("url"));
-  // The test sends TRIAL first. The page gets only the message after it.
+  // The test sends TRIAL and then TRUTH. The page gets only TRUTH.
   trial_t trial{};
   trial.condition = "secret";
   network_.Send(trial);
@@ -116,7 +116,8 @@ TEST_F(SeatPageTest, APageThatIsOpenedLateIsToldWhenTheRequestBegan) {
 }
 
 TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
-  // How often the program has said that a page is silent. When it answers, it has said all.
+  // How often the program has printed so far that a page is silent. Before the program answers this
+  // request, it has printed everything about earlier events.
   const auto silences = [this] {
     EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
     const std::string err = viewed_.process().Err();
@@ -126,7 +127,8 @@ TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
     }
     return count;
   };
-  // On a busy machine a page may count as silent before it is closed. Then another page is closed.
+  // On a busy machine a page may count as silent before the test closes it. Then the test tries
+  // again with another page.
   constexpr int kTries = 10;
   bool at_once = false;
   for (int i = 0; i < kTries && !at_once; ++i) {
@@ -153,7 +155,7 @@ TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
   network_.Hear(IsThere);
   network_.Hear(IsAway);
   EXPECT_GT(Clock::now() - silent, milliseconds(250));
-  ReceiveOp(page, "seat");  // yours
+  ReceiveOp(page, "seat");  // with the state "yours"
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "lost");
   EXPECT_TRUE(viewed_.process().WaitForErr("its page is silent"));
   // From then on the seat tells the run every 50 ms that no person drives.
@@ -177,10 +179,12 @@ TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
     second.Send(Braking(0));
     answer = AnswerTo(second);
     if (answer["op"] == "error") break;
-    // If the machine has stopped the first person for 300 ms, this person counts as absent, and the
-    // second page gets the seat. Then this page gives the seat back, and the test tries again.
+    // If the machine delays the first person for 300 ms, this person counts as absent, and the
+    // second page gets the seat. Then the second page gives the seat back, and the test tries
+    // again.
     second.Send(Away(1));
-    // If the first person has the seat again, nothing answers. The page was told so before.
+    // If the first person already has the seat again, the server does not answer this input. But it
+    // has told the second page before that the seat is taken.
     for (json told; told["op"] != "published" && told["state"] != "taken";) {
       const WebFrame frame = second.Receive();
       if (!frame.binary) told = json::parse(frame.bytes);
@@ -199,7 +203,8 @@ TEST_F(SeatPageTest, APageThatIsOnlyOpenGivesTheSeatToThePersonAtAnother) {
   second.Send(Braking(0));
   network_.Hear(IsThere);
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "yours");
-  // On a busy machine the first page, which sends nothing, may have lost the seat before.
+  // The first page sends nothing. On a busy machine it may already have lost the seat before the
+  // second page got it.
   nlohmann::json told;
   do {
     told = ReceiveOp(*first, "seat");

@@ -1,7 +1,7 @@
 // A run in real time with all roles in one process. The clock of the run is a number that the loop
 // increases. A test can make a role send nothing from a step on. A role that lacks an input also
-// sends nothing, as a process of this role would. The arbitrator and the world continue with the
-// inputs that they have.
+// sends nothing; in a real run its process does the same. The arbitrator and the world continue
+// with the inputs that they have.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ namespace fogline::test {
 // Tolerance for the rounding of accelerations (m/s2) and speeds (m/s) in one step.
 inline constexpr double kRounding = 1e-9;
 
-/// One channel at its reader: the newest message and the state of the input.
+/// The receiving end of one channel: the newest message, and the state of the input.
 template <class M>
 class Line {
  public:
@@ -49,8 +49,8 @@ class Line {
 };
 
 /// The data of a step that a test may check: the truth, the offers, the arbitrator's command, and
-/// the command that the vehicle carries out in this step. A pointer is nullptr if the role sends
-/// nothing in this step.
+/// the command that the vehicle carries out in this step. A pointer is nullptr if the role that
+/// sends this message sends nothing in this step.
 struct Moment {
   const truth_t& truth;
   const accel_command_t* automation;

@@ -21,8 +21,8 @@ using test::RealTimeLoop;
 constexpr std::size_t kCars = 5;
 constexpr std::int64_t kUntilFallback = 4;  // periods from the last command to the fallback
 
-/// The paper's scenario with five cars behind the host. Each is driven by an ACC or by a human
-/// driver.
+/// The paper's scenario with five cars behind the host. An ACC or a human driver drives each of the
+/// five cars.
 Scenario Column() {
   Scenario scenario =
       LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/world/end_on_collision=false"});

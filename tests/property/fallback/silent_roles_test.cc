@@ -42,7 +42,8 @@ class Braking {
   void Take(bool in_force, double speed_mps, double applied_mps2) {
     if (in_force_) {
       ASSERT_LE(std::abs(applied_mps2 - last_mps2_), limits_.jerk_mps3 * step_s_ + kRounding);
-      // A car that has braked harder before the manoeuvre releases the brake.
+      // If the car braked harder before the manoeuvre than the limit of the manoeuvre, the
+      // manoeuvre releases the brake gradually.
       ASSERT_GE(applied_mps2, std::min(-limits_.deceleration_mps2, last_mps2_) - kRounding);
       ASSERT_TRUE(!stands_ || speed_mps == 0) << "drives off";
       stands_ = speed_mps == 0;
@@ -85,8 +86,8 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
       if (HasFatalFailure()) return;
     }
   }
-  // Whether the fallback must be in force in this step if the roles are silent from step `death`
-  // on.
+  // Whether the fallback must be in force in the step of `m`, if the roles are silent from step
+  // `death` on.
   static bool Due(std::int64_t death, const Moment& m) {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }

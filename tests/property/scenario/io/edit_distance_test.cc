@@ -18,8 +18,8 @@ std::string RandomWord(ValueDraw& draw) {
   return word;
 }
 
-// Returns `word` after one random insertion, deletion, substitution, or swap of neighbours. @pre
-// `word` is not empty
+// Returns `word` after one random insertion, deletion, substitution, or swap of neighbouring
+// letters. @pre `word` is not empty
 std::string WithOneEdit(std::string word, ValueDraw& draw) {
   const std::size_t at = draw.Below(word.size());
   const char letter = static_cast<char>('a' + draw.Below(26));

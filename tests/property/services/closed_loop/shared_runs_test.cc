@@ -48,7 +48,7 @@ TEST(SharedRunsProperty, HaveTheMessagesOfRunsThatShareNothing) {
   closed_loop::SharedRuns runs;
   std::int64_t steps = 0;
   std::int64_t shared = 0;
-  std::map<std::string, int> times;  // of a digest
+  std::map<std::string, int> times;  // how often each digest came
   for (int i = 0; i < 40; ++i) {
     // GIVEN scenarios of which most differ only in the arbitrator
     ChangeScenario(draw, scenario);
@@ -90,8 +90,8 @@ TEST(SharedRunsProperty, HaveTheMessagesOfEveryShippedScenario) {
 }
 
 TEST(SharedRunsProperty, ARequestEndsTheSharingIfTheDriverIsAwareOfIt) {
-  // GIVEN a driver whose awareness depends on the mode, and an arbitrator that asks. During the
-  // request the automation drives on, so at first only the mode differs
+  // GIVEN a driver whose awareness depends on the mode, and an arbitrator that requests the driver
+  // to take over. During the request the automation still drives, so at first only the mode differs
   std::vector<Scenario> scenarios(
       2, LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json",
                       {"/human/loses_awareness=true", "/arbitrator/take_over/mode=requested"}));

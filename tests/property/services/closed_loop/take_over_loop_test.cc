@@ -1,5 +1,5 @@
-// Requests to take over in the closed loop of the shipped scenarios. Some drivers take over, others
-// do not.
+// Requests to take over in the closed loop of the shipped scenarios. Some drivers take over, and
+// other drivers do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -112,7 +112,8 @@ TEST_F(TakeOverLoopTest, KeepsTheRulesForEveryDriver) {
   EXPECT_GT(manoeuvres, 3);
 }
 
-/// The share of control, in [0, 1], that the old side has in the first step of a transfer.
+/// The share of control, in [0, 1], that the old side still has in the first step of a transfer.
+/// The old side is the side that gives up control.
 double LeftInTheFirstStep(const Scenario& scenario) {
   const TransferSection& section = scenario.arbitrator.transfer;
   const double progress = scenario.step_s / section.duration_s;

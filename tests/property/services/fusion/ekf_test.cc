@@ -177,9 +177,9 @@ TEST(EkfPropertyTest, PredictionAndCorrectionLeaveOutOnlyZeros) {
   }
 }
 
-// The filter uses the updates of the covariance again if it has computed them before. Values that
-// are missing, that come in another order or with another noise must not get the update of another
-// value.
+// The filter keeps the updates of the covariance that it has computed, and uses them again for the
+// same values. A value must never get the update of another value. This also holds if values are
+// missing, come in another order, or come with another noise.
 TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
   const Random random(10, Stream::kLidar);
   const std::array<fusion::Ekf::Jacobian, 4> jacobians{{{1, 0}, {0, 1}, {0.9, 0.3}, {0.8, 0}}};
@@ -194,7 +194,7 @@ TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
     ekf.Predict(-0.3);
     fresh.Predict(-0.3);
     ASSERT_EQ(ekf.covariance(), fresh.covariance());
-    // WHEN both are corrected by the three usual values, or at times by others
+    // WHEN both filters are corrected by the three usual values, or sometimes by other values
     const bool is_usual = random.Uniform2(k, 0)[0] < 0.99;
     const int values = is_usual ? 3 : static_cast<int>(random.Uniform2(k, 1)[0] * 6);
     for (int i = 0; i < values; ++i) {
@@ -213,7 +213,7 @@ TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
 }
 
 TEST(LineOfSightPropertyTest, JacobiansAreTheSlopes) {
-  constexpr double kStep = 1e-5;  // errors: kStep^2 of truncation, 1e-16 * 100 / kStep of rounding
+  constexpr double kStep = 1e-5;  // error by truncation kStep^2, by rounding 1e-16 * 100 / kStep
   const Random random(3, Stream::kLidar);
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const double d = 100 * random.Normal2(0, i)[0] / 2;

@@ -69,7 +69,7 @@ TEST(WorldProperty, AccelerationIsTheChangeOfSpeed) {
   for (int run = 0; run < kRuns; ++run) {
     const auto truths = Drive(Rough(), static_cast<std::uint64_t>(run));
     for (std::size_t k = 1; k < truths.size(); ++k) {
-      // The relative rounding 1e-12 of 60 m/s, divided by the step of 0.1 s.
+      // A relative rounding of 1e-12 at 60 m/s, divided by the step of 0.1 s.
       constexpr double kTolerance_mps2 = 1e-12 * 60.0 / 0.1;
       ASSERT_NEAR(truths[k].host_acceleration_mps2,
                   (truths[k].host_speed_mps - truths[k - 1].host_speed_mps) / 0.1, kTolerance_mps2);

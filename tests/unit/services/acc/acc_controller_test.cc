@@ -179,7 +179,8 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep_s);
     cars.Advance(output.acceleration_mps2);
   }
-  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 remains
+  // The engine's lag leaves a share of about e^-7 of the change.
+  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
@@ -212,11 +213,11 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep_s / section.engine_gain);
 }
 
-// The car may have any acceleration a when the automation takes over from a driver. In a step of h,
-// the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to -K_e u,
-// the steady acceleration of the control u. (K_e is engine_gain, T_e is engine_time_constant_s.)
-// -K_e u differs from a by at most h max_jerk_mps3, plus the amount by which a is outside of the
-// automation's limits.
+// When the automation takes over from a driver, the car may have any acceleration a. In a step of
+// h, the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to -K_e u.
+// -K_e u is the acceleration that the control u causes in the end. (K_e is engine_gain, T_e is
+// engine_time_constant_s.) -K_e u differs from a by at most h max_jerk_mps3, plus the amount by
+// which a is outside of the automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep_s / section.engine_time_constant_s);

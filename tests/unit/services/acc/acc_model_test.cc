@@ -48,7 +48,7 @@ TEST(AccModelTest, SettlesAtMinusGainTimesControl) {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (int k = 0; k < 100; ++k) x = model.phi * x + model.gamma * control;
   // THEN the car decelerates by K u, is slower than the car ahead, and its gap is too large
-  EXPECT_NEAR(x(acc::kOwnAcceleration), -0.732 * control, 1e-9);  // a share of e^-21 remains
+  EXPECT_NEAR(x(acc::kOwnAcceleration), -0.732 * control, 1e-9);  // e^-21 of the change is missing
   EXPECT_GT(x(acc::kDeltaV), 0);
   EXPECT_GT(x(acc::kDeltaD), 0);
 }

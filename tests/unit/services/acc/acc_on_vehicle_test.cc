@@ -57,8 +57,9 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     for (const models::VehicleParameters& car :
          {models::kCompact, models::kSedan, models::kTruck}) {
       const Course real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
-      // Delay and lag together are half a second. In this time a braking of 2 m/s2 changes the gap
-      // by 0.25 m. The loss of gap grows while the car ahead brakes (4 s), so the tolerance is 2 m.
+      // The delay and the lag of the car are half a second together. In half a second, a braking of
+      // 2 m/s2 changes the gap by 0.25 m. The car loses gap as long as the car ahead brakes (4 s),
+      // so the tolerance is larger: 2 m.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
       // In the end speed and gap are right, except for a small error that the dead band of the

@@ -29,7 +29,7 @@ AccSection ShortSection() {
 const acc::AccSituation kSituation{
     .state = {1.5, -0.8, 0.4}, .speed_mps = 21, .previous_control = -0.3};
 
-// The cost by its definition in acc_program.h, from a simulation.
+// The cost of the plan z, from a simulation of the plan. acc_program.h defines the cost.
 double Cost(const AccSection& section, const acc::AccSituation& now, const VectorXd& z) {
   const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep_s);
   Eigen::Vector3d x = now.state;

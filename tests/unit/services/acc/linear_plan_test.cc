@@ -30,8 +30,10 @@ TEST(LinearPlanTest, IsTheGainTimesTheSituation) {
   EXPECT_EQ(plan.First(p), controls(0));
 }
 
-// The largest elements of the columns of |K| are 2, 2, 3 and 0.5. The first change is u_0 - u_{-1},
-// so its row is (1, 2, -3, -0.5). The second row is (-3, -1, 4, -0.25).
+// The largest elements of the columns of |K| are 2, 2, 3 and 0.5, where K is the gain. The changes
+// of the control have a gain, too. Its first row, for u_0 - u_{-1}, is (1, 2, -3, -0.5), because
+// u_{-1} is the last element of the situation p. Its second row, for u_1 - u_0, is
+// (-3, -1, 4, -0.25).
 TEST(LinearPlanTest, BoundsAreTheLargestElementsOfTheColumns) {
   const LinearPlan plan(GainOfTwoSteps());
   const Eigen::Vector4d p(1, -10, 100, -1000);

@@ -33,8 +33,8 @@ Scenario Missing(MissingLidar missing) {
   return scenario;
 }
 
-// Tolerance of a difference between radar and LiDAR. The radar's range is the sum 32 + difference,
-// and its rounding loses the last bits of the difference.
+// The tolerance for a difference between radar and LiDAR. The radar's range is the sum
+// 32 + difference. The rounding of this sum loses the last bits of the difference.
 constexpr double kRoundingOfRange_m = 1e-14;
 
 TEST(ArbitratorTest, CopiesTheHeader) {
@@ -140,7 +140,8 @@ TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
   Step(arbitrator, Differing(1));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
   EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 1.5);
-  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left the window; 1 repeats
+  // The difference of 3 m has left the window. The window has only the 1 m that is repeated.
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
 }
 
@@ -218,8 +219,8 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   m.driver.readiness = 1;
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
-  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower by 0.2: by 0.1 for the
-  // visibility (gain 5 m, visibility 50 m), and by 0.1 for the follower (gain 0.5 s, TTC 5 s)
+  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower by 0.2. The fog lowers it by
+  // 5 m/50 m = 0.1 (gain/visibility), and the follower by 0.5 s/5 s = 0.1 (gain/TTC).
   arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }

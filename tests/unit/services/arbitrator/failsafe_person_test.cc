@@ -165,7 +165,8 @@ TEST_F(FailsafeSharedOverrideTest, LeavesTheAutomationNoShare) {
   }
 }
 
-/// The error text for this scenario with take_over.mode kInstant: the car need not ask the driver.
+/// The error text for this scenario if take_over.mode is kInstant. In this mode the car need not
+/// ask the driver.
 std::string ErrorIfInstant(Scenario scenario) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
   try {

@@ -38,7 +38,8 @@ TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
   for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(debouncer, 0.9), expected);
   // After the decision Wald's test starts again, so the fourth step above left L = ln 9. Three
-  // steps of -ln 9 lead to L = -4.39. This is above -ln 99, so a fourth step is needed.
+  // further steps, each of -ln 9, lead to L = -2 ln 9 = -4.39. This is above the lower bound
+  // -ln 99 = -4.595, so a fourth step is needed.
   for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(debouncer, 0.1), expected);
 }
 

@@ -23,8 +23,8 @@ lidar_t Lidar(std::int64_t step) {
 
 class SensorPairsTest : public testing::Test {
  protected:
-  // Passes the newest messages to a decision at `step`. They are of the steps `radar_step` and
-  // `lidar_step`; -1 means that no message has come.
+  // Updates the pairs at `step`. The newest messages are of the steps `radar_step` and
+  // `lidar_step`; -1 means that no message has come. @return the state of the pair
   InputState At(std::int64_t step, std::int64_t radar_step, std::int64_t lidar_step) {
     const radar_t radar = Radar(radar_step);
     const lidar_t lidar = Lidar(lidar_step);

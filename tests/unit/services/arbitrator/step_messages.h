@@ -1,4 +1,4 @@
-// The messages of a step, and a step of the arbitrator with them, for tests.
+// For tests: the messages of a step, and a function that passes them to the arbitrator.
 #pragma once
 
 #include "services/arbitrator/arbitrator.h"

@@ -1,4 +1,4 @@
-// Which runs may share steps (tests/property compares the messages).
+// Tests which runs may share steps. tests/property compares the messages of such runs.
 #include "services/closed_loop/shared_runs.h"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ struct Counted {
   std::int64_t by_measures = 0;
   std::optional<double> min_dwell_s;
   std::vector<std::int64_t> by_events;  // steps
-  bool shared = false;                  // whether a mode of the human came with lambda_human < 1/2
+  bool shared = false;                  // whether lambda_human was below 1/2 in a mode of the human
 };
 
 Counted CountTransfers(const Scenario& scenario) {

@@ -167,7 +167,8 @@ TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
             "longer than 254 steps");
   scenario.step_s = 0.005;
   EXPECT_EQ(error(), "");
-  // A driver who can lose awareness may react later: 0.8 s + 0.5 x 0.7 s are 288 steps of 4 ms.
+  // If the driver can lose awareness, the reaction time may grow to 0.8 s + 0.5 x 0.7 s = 1.15 s.
+  // In steps of 4 ms, this is 288 steps, and the limit is 254 steps.
   scenario.step_s = 0.004;
   EXPECT_EQ(error(), "");
   scenario.human.loses_awareness = true;

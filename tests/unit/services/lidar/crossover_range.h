@@ -8,9 +8,10 @@
 
 namespace fogline::test {
 
-/// Maximum range in fog of a target that a LiDAR detects up to R_c = `clear_range_m` in clear air.
-/// With alpha = `extinction_pm`, the maximum range R solves (R / R_c)^2 exp(2 alpha R) = 1, that is
-/// R exp(alpha R) = R_c. With Lambert's W, R = W(alpha R_c) / alpha.
+/// The largest range at which a LiDAR detects a target in fog. In clear air it detects this target
+/// up to R_c = `clear_range_m`. With alpha = `extinction_pm`, the largest range R solves
+/// (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With Lambert's W,
+/// R = W(alpha R_c) / alpha.
 inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   if (extinction_pm == 0.0) return clear_range_m;
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;

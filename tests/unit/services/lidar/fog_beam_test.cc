@@ -93,8 +93,8 @@ TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
   }
 }
 
-// The strongest echo of the fog in a grid of ranges. The echo at a range is the integral of the
-// pulse, centred there, times the channel gain, by the trapezoidal rule.
+// The strongest echo of the fog in a grid of ranges. For each range, the pulse is centred at this
+// range. The echo is the integral of the pulse times the channel gain, by the trapezoidal rule.
 lidar::FogPeak BruteForce(const lidar::BeamOptics& optics, double extinction_pm,
                           double centre_step_m) {
   constexpr int kPoints = 4000;

@@ -148,8 +148,8 @@ TEST(LidarTest, StatesMoreJitterForAWeakEcho) {
   EXPECT_LE(far, 0.02 * std::sqrt(2.0)) << "at the detection threshold";
 }
 
-// The variance of the time of arrival is range_std_m^2 (1 + 1/SNR), and the power of an echo is its
-// SNR relative to the detection threshold.
+// The variance of a range is range_std_m^2 (1 + 1/SNR), because the time of arrival of a weak echo
+// is less exact. The SNR is the power of the echo relative to the detection threshold.
 TEST(LidarTest, AddsAVarianceInInverseProportionToThePowerOfTheEcho) {
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.range_std_m = 0.02;

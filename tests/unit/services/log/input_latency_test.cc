@@ -33,8 +33,9 @@ TEST(InputLatencyTest, CountsARepeatedMeasurementOnce) {
   EXPECT_EQ(latency.max_us, 90);
 }
 
-// The page knows the age of an input, and the seat the time at which the page's frame came. So the
-// times of an input that the page repeats differ a little.
+// The page reports the age of an input. The seat subtracts this age from the time at which the
+// page's frame came. So if the page repeats an input, the times that the seat computes for it
+// differ a little.
 TEST(InputLatencyTest, CountsAMeasurementOnceAlthoughTheTimesOfAnInputJitter) {
   log::InputLatencyAccumulator accumulator;
   accumulator.Add(Input(1000, 20));

@@ -1,4 +1,4 @@
-// The file of a log while a run writes the file.
+// Tests what happens to the file of a log while a run writes it.
 #include "services/log/log_guard.h"
 
 #include <gtest/gtest.h>

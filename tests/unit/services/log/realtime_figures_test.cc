@@ -45,7 +45,7 @@ class UnloggedMessagesTest : public testing::Test {
     for (const std::size_t channel : channels) there.reset(channel);
     return there;
   }
-  /// @param step the last step that the radar has completed; 9: the last one
+  /// @param step the last step that the radar has completed; 9 is the last step of the log
   void AddRadar(std::int64_t instance, std::int64_t ticks, std::int64_t step = 9) {
     status_t radar = Said("radar", instance, ++sequence_);
     radar.ticks = ticks;

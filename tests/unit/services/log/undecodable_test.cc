@@ -15,7 +15,7 @@ TEST(UndecodableTest, IsTheFirstMessageThatDoesNotDecodeInTheOrderOfTheGraph) {
   runtime::Encode(truth_t{}, truth);
   runtime::Encode(radar_t{}, radar);
   runtime::Encode(lidar_t{}, lidar);
-  // Messages that are missing are no messages that do not decode.
+  // A message that is missing does not count as a message that does not decode.
   log::StepMessages messages{};
   messages[IndexOf<truth_t>()] = truth;
   messages[IndexOf<radar_t>()] = radar;

@@ -10,7 +10,8 @@ namespace fogline {
 namespace {
 
 TEST(ClopperPearsonTest, MeetsTheClosedFormsAtTheEnds) {
-  // Without an event the tail is P(0 of n) = (1 - p)^n. With n of n events it is p^n.
+  // If the true share is p, n trials have no event with a probability of (1 - p)^n, and n events
+  // with a probability of p^n. At the bound, this probability is 2.5 %.
   const metrics::EventShare none = metrics::ClopperPearson(0, 10);
   EXPECT_EQ(none.lower, 0);
   EXPECT_NEAR(none.upper, 1 - std::pow(0.025, 0.1), 1e-12);

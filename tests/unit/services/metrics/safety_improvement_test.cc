@@ -82,7 +82,7 @@ TEST(PairedMeasuresTest, SafetyIsCountedUntilTheTracksOfBothRunsAreRightAgain) {
   auto baseline = BesideFog();
   auto traded = BesideFog();
   for (metrics::Sample& sample : traded) sample.follower_gap_m = 32;  // nothing is compromised
-  traded[4].follower_gap_m = 30;                                      // CS 2 m, baseline 1 m
+  traded[4].follower_gap_m = 30;                                      // 2 m too near; baseline: 1 m
   // Only the steps in fog count, because the track is right at the end of the fog.
   EXPECT_EQ(metrics::MeasurePair(baseline, traded, {}).si_until_recovery_pct, 100);
   // If the track of one of the two runs is wrong until step 4, steps 1 to 4 count.

@@ -40,7 +40,7 @@ TEST(AttenuationTest, RainCoefficientsAt77GHzMatchP838) {
 }
 
 TEST(AttenuationTest, RainCoefficientsMeetTheTableOfP838) {
-  // ITU-R P.838-3, table 5, at frequencies of the table.
+  // The expected values are from ITU-R P.838-3, table 5. The table has these frequencies.
   const radar::RainCoefficients h10 =
       radar::RainCoefficientsOf(10.0, radar::Polarization::kHorizontal);
   EXPECT_NEAR(h10.k, 0.01217, 0.00001);

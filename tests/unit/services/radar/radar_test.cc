@@ -91,9 +91,10 @@ TEST(RadarTest, ComparesItsMaximumRangeWithTheSlantRange) {
 }
 
 TEST(RadarTest, LosesRangeInHeavyRain) {
-  // 50 mm/h attenuate by 18.76 dB/km: 6.45 dB to 172 m and back, 6.49 dB to 173 m. A distance R
-  // below the clear range of 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m. So
-  // the radar detects the target at 172 m, and does not detect it at 173 m.
+  // Rain of 50 mm/h attenuates by 18.76 dB/km. This is 6.45 dB to 172 m and back, and 6.49 dB to
+  // 173 m and back. A distance R below the clear range of 250 m gains 40 log10(250 / R): 6.50 dB at
+  // 172 m, 6.40 dB at 173 m. So the radar detects the target at 172 m, and does not detect it at
+  // 173 m.
   Scenario scenario = Exact();
   scenario.fog.rain_mmph = 50.0;
   radar::Radar radar(scenario);
@@ -118,7 +119,8 @@ TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
 }
 
 TEST(RadarTest, AddsTheLossesOfRainAndFog) {
-  // 50 mm/h alone reduce the range to 172.3 m. Fog with 1.57 dB/km reduces this range to 168.5 m.
+  // Rain of 50 mm/h alone reduces the range to 172.3 m. Fog with 1.57 dB/km reduces this range to
+  // 168.5 m.
   Scenario scenario = Exact();
   scenario.fog.model = FogModel::kBeam;
   scenario.fog.rain_mmph = 50.0;

@@ -95,7 +95,7 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
   Write(kSteps);
   EXPECT_TRUE(ReadFromEnd(kTail).final);
   EXPECT_EQ(ReadFromEnd(kTail).steps, kSteps);
-  // The cuts are around and within each of the last two dozen events.
+  // The file is cut every 37 bytes. So each of the last 40 events is cut at several places.
   for (auto size = static_cast<std::int64_t>(std::filesystem::file_size(file_)); size > 60'000;
        size -= 37) {
     std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(size));

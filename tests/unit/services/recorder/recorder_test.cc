@@ -201,7 +201,8 @@ TEST_F(RecorderTest, LeavesAFileThatIsNoLogAlone) {
 
 TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
   WholeLog();
-  // The world has begun step 400, so step 368 must be on disk.
+  // The world begins a step only if the step kMaxAhead = 32 before it is on disk. The world has
+  // begun step 400, so step 368 must be on disk.
   const auto recorder = Record(script_, "whole", recorder::Recorder::Existing::kResume, 400);
   EXPECT_THAT(ErrorOf(*recorder),
               HasSubstr("the log has 150 steps, but the recorder had written 369"));

@@ -66,7 +66,7 @@ TEST(FogScheduleTest, ModelsBeamAndModesBlendTheExtinctionsOfClearAirAndFog) {
                                             .visibility_m = 50.0,
                                             .clear_visibility_m = 1000.0});
     EXPECT_DOUBLE_EQ(fog.At(0).visibility_m, 1000.0);
-    // Half way: extinction 3/1000 and 3/50 per metre have the mean 3 * 21/2000.
+    // Halfway, the extinction is the mean of 3/1000 and 3/50 per metre, which is 3 * 21/2000.
     EXPECT_DOUBLE_EQ(fog.At(1'000'000).visibility_m, 2000.0 / 21.0);
     EXPECT_DOUBLE_EQ(fog.At(2'000'000).visibility_m, 50.0);
     EXPECT_EQ(fog.At(4'000'000).visibility_m, 1000.0);

@@ -169,8 +169,8 @@ TEST(SensitivityTest, IsTheSlopeOfTheTable) {
   const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
-    // THEN the change for 1 % of the range is the difference of the two tables. The values are 4e-3
-    // m apart, and are rounded to 1e-6 m.
+    // THEN the change for 1 % of the range is the difference of the two tables. The two values of
+    // the field are 4e-3 m apart, and each value is rounded to 1e-6 m.
     const double slope = *above.rows[row].si_pct.mean() - *below.rows[row].si_pct.mean();
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(*(*changes)[0][row].si_pct, slope, 1e-3 * std::abs(slope));
@@ -184,7 +184,7 @@ TEST(SensitivityTest, LooksToOneSideAtABoundAndAWholeStepForAnInteger) {
   const calibrate::Evaluation next = Evaluate(problem, 9);
   const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {8}, Always);
   ASSERT_TRUE(changes);
-  // One step of eight is 12.5 % of the range.
+  // The field has the range 8 to 16. So one step is an eighth of the range, 12.5 %.
   EXPECT_NEAR(*(*changes)[0][0].si_pct,
               (*next.rows[0].si_pct.mean() - *here.rows[0].si_pct.mean()) / 12.5, 1e-9);
 }

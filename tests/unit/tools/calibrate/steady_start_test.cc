@@ -34,7 +34,8 @@ TEST(SteadyStartTest, DerivesTheGapsThatAPersonDerivedForPaperJson) {
 
 TEST(SteadyStartTest, LetsNoCarAccelerateInClearAir) {
   for (const char* policy : {"none", "traded"}) {
-    // GIVEN sensors without noise, a human who drives always or never, and other parameters
+    // GIVEN sensors without noise, a human who drives never (policy none) or always (threshold 0),
+    // and some other values than those of paper.json
     Scenario scenario =
         Paper({"/fog/model=none", std::string("/arbitrator/policy=") + policy,
                "/arbitrator/threshold=0", "/radar/range_std_m=0", "/radar/range_rate_std_mps=0",

@@ -117,7 +117,7 @@ TEST_F(JsonLinesTest, AreOverWhenTheOtherSideHasClosedAndAllIsTaken) {
   EXPECT_EQ(lines.Take().value(), json({{"a", 1}}));
   EXPECT_FALSE(lines.Take().has_value());
   EXPECT_TRUE(lines.ended());
-  lines.Send({{"b", 2}});  // no signal ends this process
+  lines.Send({{"b", 2}});  // SIGPIPE does not end this process
 }
 
 TEST_F(JsonLinesTest, DoNotWaitForASideThatReadsNothing) {

@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// The message for a laboratory with these members.
+/// The error text for a laboratory file with these members.
 std::string LabRefusal(const std::string& members) {
   return ErrorOf([&] { hosts::ParseLab(R"({"version": 1, )" + members + "}", "lab.json"); });
 }

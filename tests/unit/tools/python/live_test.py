@@ -40,7 +40,7 @@ class LiveTest(unittest.TestCase):
                 if len(heard) == 3:
                     break
                 self.send(len(heard) + 1)
-                # The test is about this time: it is longer than the limit of silence.
+                # The caller takes longer than timeout_s. This time must not count as silence.
                 time.sleep(2 * timeout_s)
         self.assertEqual(heard, [("LIDAR", 1), ("LIDAR", 2), ("LIDAR", 3)])
 

@@ -144,7 +144,8 @@ TEST_F(SupervisorTest, StartsNoProcessAgainThatExitsByItself) {
   EXPECT_THAT(supervisor_->restarts(), IsEmpty());
 }
 
-// The network may be down while a role is started again. Here its key is missing.
+// A role that is started again may end at once, for example while the network is down. In this test
+// it ends because the file of its key is missing.
 TEST_F(SupervisorTest, TriesAgainIfAProcessThatIsStartedAgainEndsAtOnce) {
   Begin(kManySteps, {.restarts = 1});
   ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();

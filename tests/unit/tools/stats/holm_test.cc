@@ -11,7 +11,7 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
-// The values of R's p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm").
+// The expected values are from R: p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm").
 TEST(HolmTest, AdjustsForTheNumberOfTestsStepByStep) {
   constexpr double kSame = 1e-12;
   EXPECT_THAT(stats::Holm(std::array{0.01, 0.04, 0.03, 0.005}),

@@ -15,14 +15,14 @@ std::vector<double> FirstYes(std::size_t yes) {
   return values;
 }
 
-// By hand: 2 * 0.5^6 for six pairs that differ in the same direction.
+// By hand: six pairs differ, all in the same direction, so p is 2 * 0.5^6.
 TEST(McNemarTest, CountsOnlyThePairsThatDiffer) {
   EXPECT_DOUBLE_EQ(stats::McNemar(FirstYes(6), FirstYes(0)), 0.03125);
   EXPECT_DOUBLE_EQ(stats::McNemar(FirstYes(0), FirstYes(6)), 0.03125);
   EXPECT_DOUBLE_EQ(stats::McNemar(FirstYes(16), FirstYes(10)), 0.03125) << "ten pairs are alike";
 }
 
-// By hand: of five pairs that differ, one differs in the other direction: 2 * (1 + 5)/32.
+// By hand: five pairs differ, one of them in the other direction, so p is 2 * (1 + 5)/32.
 TEST(McNemarTest, WeighsBothDirections) {
   EXPECT_DOUBLE_EQ(
       stats::McNemar(std::array{1.0, 1.0, 1.0, 1.0, 0.0}, std::array{0.0, 0.0, 0.0, 0.0, 1.0}),

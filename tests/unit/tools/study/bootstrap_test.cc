@@ -25,7 +25,8 @@ TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
     EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0.0), kRuns);
     for (std::size_t run = 0; run < kRuns; ++run) sums[run] += weights[run];
   }
-  // A weight has variance 1 - 1/7. The tolerance is five deviations of its mean.
+  // A weight has a variance of 1 - 1/7. The tolerance is five standard deviations of the mean of
+  // kDraws weights.
   const double tolerance = 5 * std::sqrt((1 - 1.0 / kRuns) / kDraws);
   for (const double sum : sums) EXPECT_NEAR(sum / kDraws, 1, tolerance);
 }
@@ -58,7 +59,7 @@ TEST(FromReplicatesTest, TakesThePercentiles) {
 
 TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_FALSE(study::FromReplicates(1, 2, {1, 2, 3}).has_interval());
-  // The percentiles themselves are not near the missing value.
+  // One missing value is enough, although it is not near the percentiles.
   std::vector<double> replicates(101);
   std::iota(replicates.begin(), replicates.end(), 0.0);
   EXPECT_TRUE(study::FromReplicates(9, 2, replicates).has_interval());

@@ -96,8 +96,8 @@ TEST(VerdictTest, IsUndecidedWhereTheIntervalHasZeroInIt) {
             study::Verdict::kLess);
 }
 
-// By hand, with Student's t of three degrees of freedom: mean 1, standard error 1/2, so t is 2 for
-// the sign, and (2 - 1) / (1/2) = 2 for the margin 2. P(T > 2) = 0.069663.
+// By hand: the mean is 1, the standard error is 1/2, and Student's t has three degrees of freedom.
+// So t is 2 for the sign, and (2 - 1) / (1/2) = 2 for the margin 2. P(T > 2) is 0.069663.
 TEST(PValueTest, IsThatOfStudentsT) {
   const double root = std::sqrt(1.5);  // four values with mean 1 and standard deviation 1
   const std::vector<double> values{1 - root, 1, 1, 1 + root};

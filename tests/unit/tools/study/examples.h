@@ -1,4 +1,4 @@
-// Numbers of the tests of studies.
+// Constants for the tests of studies.
 #pragma once
 
 #include <cstdint>

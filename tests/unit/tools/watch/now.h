@@ -1,4 +1,4 @@
-// A time in the tests of `fogline top`.
+// The time that the tests of `fogline top` use as the present.
 #pragma once
 
 #include <chrono>

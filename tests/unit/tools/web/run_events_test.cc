@@ -33,7 +33,7 @@ TEST(RunEventsTest, DoNotBeginWithWhatBeganBeforeTheyWereJoined) {
     events.Add(truth);
     events.Add(command, std::nullopt);
     EXPECT_EQ(events.events().size(), first == 0 ? 3U : 0U);
-    // What ends afterwards is an event in both cases.
+    // The end of the fog is an event in both cases.
     truth_t clear = truth;
     clear.fog_present = 0;
     clear.header.step = first + 1;

@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 1000;
 
 // Prints the measures of these rows that allocate memory in a step. @return whether any measure
-// does
+// allocates memory
 template <class Row>
 bool Allocates(std::span<const Row> rows, const conflict::ConflictParameters& parameters) {
   const Random random(1, Stream::kRadar);

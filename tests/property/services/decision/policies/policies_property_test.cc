@@ -123,8 +123,9 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
-      // The command lies between the offers and the previous command. The gate replaces a command
-      // beyond the gate's limit by this limit, which may be outside of this range.
+      // The command lies in the range of the two offers and the previous command. If a command is
+      // beyond the gate's limit, the gate replaces the command by this limit. The limit may be
+      // outside of the range.
       const TransferSection& transfer = scenario.arbitrator.transfer;
       const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
@@ -258,9 +259,9 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
 }
 
 // Wald's sequential test (hysteresis `sprt`) keeps the error rates that its parameters allow, if
-// the DoC really is the probability of a conflict. Here a reading x comes from N(m, 1) with a
-// conflict, and from N(-m, 1) without. If both are equally likely, the probability of a conflict is
-// 1/(1 + e^(-2mx)).
+// the DoC really is the probability of a conflict. Here a reading x comes from N(m, 1) if there is
+// a conflict, and from N(-m, 1) if there is no conflict. If both cases are equally likely, the
+// probability of a conflict is 1/(1 + e^(-2mx)).
 TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
   constexpr int kTests = 20'000;
   constexpr double kMean = 0.3;

@@ -1,4 +1,5 @@
-// Properties of policies::Witness: the filter's prediction of the range, computed from messages.
+// Properties of policies::Witness, which computes the filter's prediction of the range from
+// messages.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -27,11 +28,12 @@ Scenario With(NoiseAdaptation rule, double radar_offset_m = 0, double lidar_offs
 }
 
 /// Computes the variance of the filter's prediction of the first range in a step (H P- H' in
-/// services/fusion/README.md), from the messages so far. It is the variance S of the range's
-/// innovation minus the noise variance R. R follows the filter's rule for adaptive noise, which
-/// uses the innovation d or the residual e. The class uses e = d R / S and, for the variance after
-/// the correction, (S - R) R / S. Both hold only without lateral offsets of the sensors. The rule
-/// `innovation` does not need them, so it is also exact with lateral offsets.
+/// services/fusion/README.md), from the messages so far. This variance is the variance S of the
+/// range's innovation minus the noise variance R. R follows the filter's rule for adaptive noise,
+/// which uses the innovation d or the residual e. The class uses two formulas. The residual is
+/// d R / S, and the variance after the correction is (S - R) R / S. Both formulas hold only if the
+/// sensors have no lateral offsets. The rule `innovation` does not need these formulas, so it is
+/// also exact with lateral offsets.
 class ByRecursion {
  public:
   explicit ByRecursion(const Scenario& scenario)

@@ -1,7 +1,7 @@
 // Random events for the state machine of take-overs, and an independent computation of its events
-// and commands. The computation does not call services/decision/take_over/take_over.cc. Both share
-// only the code for the drawn take-over time and for the course of a manoeuvre. This shared code
-// has tests of its own.
+// and commands. The computation does not call services/decision/take_over/take_over.cc. It shares
+// with take_over.cc only the code for the drawn take-over time and for the course of a manoeuvre.
+// This shared code has tests of its own.
 #pragma once
 
 #include <algorithm>
@@ -166,8 +166,8 @@ class Witness {
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    // A person may answer up to the step of the deadline. A drawn take-over time is compared with
-    // lead_s itself.
+    // A person may still answer in the step of the deadline. A drawn take-over time is compared
+    // with lead_s itself.
     const double answer_s = answers_now ? t : time_s_;
     const bool in_time = person_.drives ? answer_s < section_.lead_s + step_s_ - kTolerance
                                         : answer_s <= section_.lead_s;

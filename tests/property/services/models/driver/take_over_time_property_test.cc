@@ -50,9 +50,10 @@ TEST(TakeOverTimeProperty, HasTheMeanAndDeviationAskedFor) {
     squares += drawn_s * drawn_s;
   }
   const double mean = sum / kDraws;
-  // The tolerances are four standard deviations of the estimates: of the mean, and of the standard
-  // deviation. For the standard deviation this is relative, sqrt((5.3 - 1) / (4 n)), because the
-  // log-normal variable has a kurtosis of about 5.3 here.
+  // Each tolerance is four standard deviations of the estimate. The standard deviation of the
+  // estimated mean is 1.63 / sqrt(n). The relative standard deviation of the estimated standard
+  // deviation is sqrt((5.3 - 1) / (4 n)), because the log-normal variable has a kurtosis of about
+  // 5.3 here.
   EXPECT_NEAR(mean, 4.57, 4 * 1.63 / 100);
   EXPECT_NEAR(std::sqrt(squares / kDraws - mean * mean), 1.63, 4 * 1.63 * 0.0104);
 }

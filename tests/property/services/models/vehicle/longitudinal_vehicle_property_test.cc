@@ -74,7 +74,8 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       const double height_j =
           vehicle.mass_kg * models::kGravity_mps2 * path_m * grade / std::sqrt(1 + grade * grade);
       ASSERT_LE(kinetic_j + height_j, engine_j + 1e-6) << "drive " << drive << " step " << step;
-      // The tyres' limits. On a slope, gravity may increase either limit.
+      // The limits of the tyres. On a slope, gravity may make the braking or the acceleration
+      // larger than these limits.
       const double slope_mps2 = models::kGravity_mps2 * 0.1;
       const double drag_mps2 = 0.5 * models::kAirDensity_kgpm3 * vehicle.drag_coefficient *
                                vehicle.frontal_area_m2 * motion.speed_mps * motion.speed_mps /

@@ -35,7 +35,7 @@ TEST(MotionProperty, SplittingAStepChangesNothing) {
     const models::Motion whole = models::Advance(from, a, duration_s);
     const models::Motion halves =
         models::Advance(models::Advance(from, a, duration_s / 2), a, duration_s / 2);
-    // The tolerance covers a few roundings of numbers up to 1e3, with 1e-12 relative.
+    // The tolerance covers a few roundings of numbers up to 1e3. It is 1e-12 (relative).
     EXPECT_NEAR(halves.position_m, whole.position_m, 1e-12 * 1e3);
     EXPECT_NEAR(halves.speed_mps, whole.speed_mps, 1e-12 * 60.0);
   }

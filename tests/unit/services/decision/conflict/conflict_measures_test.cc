@@ -40,8 +40,8 @@ Claims ClaimsOf(std::string_view name) {
   return less == kLess.end() ? Claims{} : less->second;
 }
 
-constexpr int kSteps = 3;           // too few to reach any ceiling
-constexpr double kRounding = 1e-7;  // square roots of differences of squares
+constexpr int kSteps = 3;           // too few for a score to reach an upper limit
+constexpr double kRounding = 1e-7;  // of the square root of a difference of squares
 constexpr double kBin_m = 0.5;      // binned measures need not grow within a bin
 
 // The score after `steps` steps with this evidence.
@@ -113,8 +113,9 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // The score of lidar_modes rises with errors of both signs. But the distance r* of the
-        // fog's echo is on one side of the car only, so the scores for the two signs differ.
+        // The score of lidar_modes rises with errors of both signs. But only an error of one sign
+        // brings the LiDAR's range nearer to r*, the distance of the fog's echo. So the scores for
+        // the two signs differ.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kReleased_mps2 = -0.5;     // coasting_mps2
 constexpr double kThreshold_mps2 = -2.5;    // with the brake at override_pedal
-constexpr double kHardBraking_mps2 = -4.5;  // with the brake pressed by half
+constexpr double kHardBraking_mps2 = -4.5;  // with the brake pressed halfway
 
 class BrakeOverrideTest : public TakeOverTest {
  protected:

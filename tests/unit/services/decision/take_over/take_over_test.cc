@@ -50,7 +50,8 @@ TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestWithoutAnAnswer) {
   StepWhile(kDemand);
   EXPECT_NEAR(StepWhile(kUrgentDemand), 10.0, 1e-9);
   EXPECT_EQ(state(), kMrmComfort);
-  // 20 m/s at 1.5 m/s2 take 13.3 s. The ramps at both ends, at 2.5 m/s3, add 0.6 s in total.
+  // A stop from 20 m/s at 1.5 m/s2 takes 13.3 s. The ramps at both ends, at 2.5 m/s3, add 0.6 s in
+  // total.
   EXPECT_NEAR(StepWhile(kMrmComfort), 10.0 + 13.3 + 0.6, 0.5);
   EXPECT_EQ(state(), kMrmDone);
   EXPECT_EQ(take_over_->request()->manoeuvre, 100);

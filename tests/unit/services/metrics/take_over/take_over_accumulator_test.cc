@@ -20,7 +20,7 @@ using metrics::TakeOverMeasures;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr std::int64_t kStep_us = 500'000;  // a power of two of a second: all times are exact
+constexpr std::int64_t kStep_us = 500'000;  // 1/2 s is a power of two: all times are exact
 
 /// A step of the host. By default the host drives at 20 m/s, 30 m behind a car of the same speed.
 struct HostStep {

@@ -65,7 +65,7 @@ TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
 }
 
 TEST(FogSightTest, LosesOutlineThenLamps) {
-  const models::FogSight sight{FogSightParameters{}};  // the two ranges at 50 m: 38.4 m and 50 m
+  const models::FogSight sight{FogSightParameters{}};  // in fog of 50 m: outline 38.4 m, lamps 50 m
   EXPECT_EQ(sight.At(38, 50), models::Seen::kOutline);
   EXPECT_EQ(sight.At(39, 50), models::Seen::kLamps);
   EXPECT_EQ(sight.At(51, 50), models::Seen::kNothing);

@@ -83,9 +83,10 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
 }
 
 TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
-  // The symbols are those of following.h. With v = v_l = 20 m/s, s = 20 m and a_lead = -4 m/s2, v_l
-  // (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 = -2.857. The IIDM with s* = 32 m gives 0.73 (1 -
-  // 2.56) = -1.139. The model uses the IIDM, because -1.139 is larger than -2.857.
+  // The symbols are those of following.h: v = v_l = 20 m/s, s = 20 m and a~ = a_lead = -4 m/s2.
+  // v_l (v - v_l) = 0 is below -2 s a~ = 160, so a_CAH = -1600 / 560 = -2.857. The IIDM with
+  // s* = 32 m gives 0.73 (1 - 2.56) = -1.139. The model uses the IIDM, because -1.139 is larger
+  // than -2.857.
   DriverSection driver;
   const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);

@@ -87,8 +87,10 @@ TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
 }
 
 TEST(HumanDriverTest, TheNearerOfTwoStepsDecidesWhetherThereIsACar) {
-  // WHEN a car has appeared in step 2 THEN at step 3 the driver reacts to the situation 0.13 s or
-  // 0.17 s before
+  // GIVEN a car that appears in step 2, at 0.2 s. WHEN step 3 comes, at 0.3 s, THEN a driver with a
+  // reaction time of 0.13 s reacts to the situation at 0.17 s. This is nearer to step 2, so the
+  // driver notices the car. With 0.17 s the driver reacts to the situation at 0.13 s, nearer to
+  // step 1, and does not notice the car
   for (const auto& [reaction_time_s, notices] : {std::pair{0.13, true}, {0.17, false}}) {
     HumanParameters late = kPerfect;
     late.reaction_time_s = reaction_time_s;

@@ -44,7 +44,7 @@ TEST(IdmTest, StandsStillAtTheStandstillGap) {
 TEST(IdmTest, WantsNoLessThanTheStandstillGapBehindACarThatRunsAway) {
   const DriverSection driver;
   const models::Idm idm(driver);
-  const double away = 1000;  // m/s: the bracket of s* is negative at either speed
+  const double away = 1000;  // m/s: s* is the standstill gap at this speed, and at twice this speed
   EXPECT_EQ(idm.Acceleration(10, away, 5), idm.Acceleration(10, 2 * away, 5));
 }
 
@@ -60,7 +60,7 @@ TEST(IdmTest, BrakesAsHardAsItCanWhereTheFormulaHasNoLimit) {
 
 TEST(IdmTest, TakesANegativeSpeedForStandingStill) {
   DriverSection driver;
-  driver.exponent = 3.5;  // a negative base has no such power
+  driver.exponent = 3.5;  // a negative number has no power with this exponent
   const models::Idm idm(driver);
   EXPECT_EQ(idm.Acceleration(-0.1, 5, 20), idm.Acceleration(0, 5, 20));
 }

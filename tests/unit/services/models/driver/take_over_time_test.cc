@@ -29,8 +29,9 @@ TEST(TakeOverTimeTest, IsLateAsOftenAsAskedFor) {
 }
 
 TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
-  // Mean 6.325 s, standard deviation 2.234 s (SUMO's table: 2.233). A draw is late if its normal
-  // number is above 1.645. A normal number of 1 gives 8.558 s.
+  // The time has a mean of 6.325 s and a standard deviation of 2.234 s (SUMO's table: 2.233). A
+  // drawn time is late, that is above 10 s, if its standard normal number is above 1.645. For
+  // example, the normal number 1 gives 8.559 s.
   const models::TakeOverTime sumo({.model = TakeOverModel::kSumo}, 10);
   const Random random(5, Stream::kTakeOver);
   for (std::int64_t step = 0; step < 20; ++step) {

@@ -12,9 +12,9 @@ models::Situation Behind(double speed_mps, double gap_m, double lead_mps, double
 }
 
 TEST(SafeDistanceTest, RssIsAsWorkedByHand) {
-  // With the default parameters: 20 + 1.75 + 23.5^2 / 8 - 400 / 16 m.
+  // With the default parameters, the distance is 20 + 1.75 + 23.5^2 / 8 - 400 / 16 m.
   EXPECT_NEAR(models::RssSafeDistance({}, 20, 20), 65.78125, 1e-9);
-  // With these parameters: 10 + 0.25 + 21^2 / 12 - 400 / 16 m.
+  // With the parameters `tuned`, the distance is 10 + 0.25 + 21^2 / 12 - 400 / 16 m.
   const models::RssParameters tuned{
       .response_s = 0.5, .acceleration_mps2 = 2, .least_braking_mps2 = 6, .most_braking_mps2 = 8};
   EXPECT_NEAR(models::RssSafeDistance(tuned, 20, 20), 22, 1e-9);

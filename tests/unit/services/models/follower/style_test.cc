@@ -46,7 +46,8 @@ TEST(StyleTest, DrawsInProportionToTheShares) {
     aggressive += style == models::Style::kAggressive ? 1 : 0;
     normal += style == models::Style::kNormal ? 1 : 0;
   }
-  // The tolerances are four standard deviations sqrt(n p (1 - p)), which are 40 and 50 cars.
+  // The standard deviations sqrt(n p (1 - p)) are 40 and 50 cars. The tolerances are four standard
+  // deviations.
   EXPECT_NEAR(aggressive, 2000, 160);
   EXPECT_NEAR(normal, 5000, 200);
 }

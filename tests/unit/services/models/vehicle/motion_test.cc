@@ -14,7 +14,7 @@ TEST(MotionTest, AdvancesByTheClosedForm) {
 }
 
 TEST(MotionTest, ComesToRestAtTheExactMomentWithinTheStep) {
-  // 0.5 m/s at -10 m/s2: at rest after 0.05 s and v^2 / (2 a) = 0.0125 m.
+  // From 0.5 m/s at -10 m/s2, the car is at rest after 0.05 s and v^2 / (2 a) = 0.0125 m.
   const models::Motion to = models::Advance({3.0, 0.5}, -10.0, 0.1);
   EXPECT_DOUBLE_EQ(to.position_m, 3.0125);
   EXPECT_EQ(to.speed_mps, 0.0);
@@ -50,7 +50,7 @@ TEST(ContactTest, IsTheFirstRootOfTheParabola) {
 }
 
 TEST(ContactTest, HappensWhenTheGapOpensFirst) {
-  // The gap is 8 + 2 t - 3 t^2 = (2 - t) (4 + 3 t).
+  // The gap is 8 + 2 t - 3 t^2 = (2 - t) (4 + 3 t), so the cars touch at 2 s.
   EXPECT_DOUBLE_EQ(models::TimeToContact(8.0, 30.0, -6.0, 28.0, 0.0, 4.0).value(), 2.0);
 }
 
@@ -65,8 +65,9 @@ TEST(ContactTest, DoesNotHappenAfterTheEnd) {
 }
 
 TEST(ContactTest, CountsTheRestOfTheCarAhead) {
-  // The car ahead stops after 1 s and 5 m; the car behind keeps 10 m/s: (7 + 5) m / 10 m/s. If the
-  // car ahead rolled back instead, the gap 7 - 5 t^2 would close at 1.183 s.
+  // The car ahead stops after 1 s and 5 m. The car behind keeps 10 m/s, so the cars touch after
+  // (7 + 5) m / 10 m/s. If the car ahead rolled back instead, the gap 7 - 5 t^2 would close at
+  // 1.183 s.
   EXPECT_DOUBLE_EQ(models::TimeToContact(7.0, 10.0, -10.0, 10.0, 0.0, 2.0).value(), 1.2);
 }
 

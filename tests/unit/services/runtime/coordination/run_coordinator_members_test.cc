@@ -175,8 +175,8 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
 /// from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
-  /// For this time, publishes a STATUS of the process `who` every 100 ms. The process is the
-  /// driver, or another process that takes the driver's role.
+  /// Publishes a STATUS of the process `who` every 100 ms, for the duration `time`. The process is
+  /// the driver, or another process that takes the driver's role.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);
@@ -243,7 +243,8 @@ TEST_F(StrayWordTest, OfASuccessorCountsAsOftenAsTheRunAllowsRestarts) {
   // WHEN the driver sends nothing for a second, and another process takes its place
   status_t other = OtherDriver();
   while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
-  // A pause of this process may count as silence for one coordinator and not for another.
+  // If this process pauses, one coordinator may regard the driver as silent, and another may not.
+  // So the successor goes on sending until `once` and `never` have noticed the silence, too.
   constexpr int kTries = 100;
   for (int i = 0; i < kTries && (once.member(Role::kDriver).replaced == 0 || never.error().empty());
        ++i) {

@@ -156,8 +156,8 @@ TEST_F(MembershipOfADriverTest,
 }
 
 TEST_F(MembershipOfADriverTest, LeavesARunThatHasAnotherDriverWhenItsRunnerSaysSo) {
-  // GIVEN a driver with --run-id, and a RUN that names another driver. The driver cannot know
-  // whether this RUN comes from a log that is played, so it does not leave immediately
+  // GIVEN a driver with --run-id, and a RUN that names another driver. This RUN may come from a log
+  // that is played, and the driver cannot know this. So it does not leave immediately.
   script_.SayRun(run_t::GO, -1);
   const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
   run_t taken = Script::WithDriver(

@@ -1,4 +1,4 @@
-// The parts of a node together.
+// Tests the parts of a node together.
 #include "services/runtime/node/node.h"
 
 #include <gtest/gtest.h>

@@ -51,7 +51,8 @@ TEST(TcpqUrlTest, ListensOnlyOnAddressesOfThisMachine) {
         test::ErrorOf([&group] { ResolveOwn(group + ":7701", "--listen"); }),
         "error: --listen: " + group + " is no address of this machine (`ip address` lists them)");
   }
-  // A host name is named with its address. inet_aton() takes this short form as a name.
+  // If the host is not written as a full address, the error names the host and its address.
+  // getaddrinfo() accepts the short form 203.28935 of the address 203.0.113.7.
   EXPECT_EQ(test::ErrorOf([] { ResolveOwn("203.28935", "--listen"); }),
             "error: --listen: \"203.28935\" (203.0.113.7) is no address of this machine (`ip "
             "address` lists them)");

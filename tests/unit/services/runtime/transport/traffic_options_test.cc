@@ -8,7 +8,7 @@
 namespace fogline::runtime {
 namespace {
 
-// LCM opens no network with this address.
+// LCM cannot open a network with this address.
 constexpr const char* kNoNetwork = "udpm://no.such.address:7700?ttl=0";
 
 std::string ErrorOfOpening(const std::string& url, const TrafficOptions& options) {

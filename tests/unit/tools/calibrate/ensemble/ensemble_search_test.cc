@@ -16,7 +16,8 @@ using Shares = std::vector<double>;
 
 Shares AsTheyAre(const Shares& shares) { return shares; }
 
-/// A landscape of two fields. Every point meets the target, for both kinds of seeds.
+/// A landscape of two fields. Every point meets the target, for the seeds of the search and for the
+/// fresh seeds.
 calibrate::Landscape Plain() {
   return {.fields = 2,
           .searched = [](const Shares&) { return 0.0; },

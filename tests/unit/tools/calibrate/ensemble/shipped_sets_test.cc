@@ -37,7 +37,8 @@ std::vector<std::string> CellsOf(const std::string& line) {
   return cells;
 }
 
-/// The free fields of the table, with their bounds, and the text of each set's value.
+/// The free fields of sets.csv, with their bounds. For each field, `values` has the text of its
+/// value in each set.
 struct FreeFields {
   std::vector<calibrate::FreeField> fields;
   std::vector<std::vector<std::string>> values;

@@ -27,7 +27,7 @@ study::DetectionRule RuleOf(std::vector<std::size_t> ranked,
           .jobs = 2};
 }
 
-/// Runs of 100 s with their greatest scores in the middle. These scores are uniform in (0, 1).
+/// Runs of 100 s. Each run reaches its greatest score at 50 s. These scores are uniform in (0, 1).
 std::vector<study::ClearRun> ClearAir() {
   std::vector<study::ClearRun> runs;
   const Random random(1, Stream{1'000'004});
@@ -52,14 +52,15 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const study::Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
   const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
-  // All runs in fog are equal, so only the threshold can vary. The threshold is the quantile of the
-  // greatest scores that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). A
-  // run lasts 50 s if it has an alarm, else 100 s. So ARL0 is (100 - 50 q)/q = 400 s, and q = 2/9.
-  // The score in fog grows by 0.1 in a second, so the delay is the threshold divided by 0.1.
+  // All runs in fog are equal, so only the threshold can vary. A run in clear air lasts 50 s if it
+  // has an alarm, else 100 s. If a share q of these 60 runs has an alarm, ARL0 is (100 - 50 q)/q s.
+  // ARL0 is 400 s, so q is 2/9. The threshold is the quantile of the greatest scores that a share q
+  // of the runs exceeds. Its standard deviation is sqrt(q (1 - q)/60). The score in fog grows by
+  // 0.1 in a second, so the delay is the threshold divided by 0.1.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
-  // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
-  // apart. A sum of this many spacings has a deviation of 28 %, because the deviation of each
-  // spacing equals its mean.
+  // The ends of the interval are two of the 60 scores, in order of their size. They are
+  // 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places apart. A sum of this many spacings has a relative
+  // standard deviation of 28 %, because the standard deviation of a spacing equals its mean.
   const double width_s = 2 * 1.96 * deviation_s;
   EXPECT_NEAR(delay.high - delay.low, width_s, 2 * 0.28 * width_s);
   EXPECT_FALSE(compared[0].delay_minus_other_s[0].has_interval()) << "there is no other";

@@ -86,15 +86,15 @@ TEST(RobustnessTest, SaysOfEachSetWhetherTheDifferenceHasTheSign) {
 }
 
 TEST(RobustnessTest, EqualityHoldsWithinItsMarginOrOnOneSideOfIt) {
-  // GIVEN differences far below, just inside, and far above a margin of 1, and one at the margin
+  // GIVEN a margin of 1, and differences far below -1, within the margin, far above 1, and at 1
   study::ClaimInSets claim{.quoted = {.study = "policy", .says = kCostsNothing}, .sets = {}};
   for (const double mean : {-3.0, 0.1, 3.0, 1.01}) {
     claim.sets.push_back(ClaimWith(mean, 0.2, Sign::kEqual, 1));
   }
   EXPECT_THAT(OutcomesOf(claim),
               ElementsAre(InSet::kOpposite, InSet::kHolds, InSet::kOpposite, InSet::kUndecided));
-  // THEN a claim with kAbove also holds if the difference is far below the margin, and a claim with
-  // kBelow also holds if the difference is far above the margin
+  // THEN a claim with kAbove also holds if the difference is far below -1, and a claim with kBelow
+  // also holds if the difference is far above 1, or at 1
   claim.quoted.bound = study::Bound::kAbove;
   EXPECT_THAT(OutcomesOf(claim),
               ElementsAre(InSet::kHolds, InSet::kHolds, InSet::kOpposite, InSet::kUndecided));

@@ -52,7 +52,8 @@ TEST(StringRunsTest, MeasuresFromASecondBeforeTheFog) {
   for (const study::CarInString& car : braked.cars) {
     for (const double braking : car.max_deceleration_mps2) EXPECT_LT(braking, 0.5);
   }
-  // BUT they show the braking of the host in the last second before the fog, when the run ends
+  // BUT they show the braking of the host in the last second before the fog. This run ends when the
+  // fog begins.
   const study::StringOutcome brakes = RunString(HardBraking(18), /*steps=*/200);
   for (const double braking : brakes.cars[0].max_deceleration_mps2) EXPECT_GT(braking, 0.5);
 }

@@ -40,12 +40,13 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 }
 
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
-  // A point is off by the difference between its gain and the gain that its two neighbours give.
-  // RHE 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The gain
-  // of the point is 10, so it is off by 7.5. The stretch to 20 % is the shorter one at this point,
-  // so it counts as it is.
-  // RHE 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The gain of the point
-  // is 20, so it is off by 4.
+  // The error of a point is the difference between its gain and the gain on the line between its
+  // two neighbours.
+  // RHE 40 % lies between 100 % and 20 %. Three quarters of the way from -50 to 20, the gain is
+  // 2.5. The gain of the point is 10, so its error is 7.5. The stretch from 40 % to 20 % is shorter
+  // than the stretch from 100 % to 40 %, so the error is not increased.
+  // RHE 20 % lies between 40 % and 0 %. Halfway from 10 to 22, the gain is 16. The gain of the
+  // point is 20, so its error is 4.
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 7.5, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 5)), 3, 1e-12);

@@ -92,8 +92,8 @@ TEST(SenderSequenceTest, LosesNothingWhenASenderBeginsAgain) {
   AddRange(sequence, 5000, 10);
   AddRange(sequence, 0, 10);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 20, .restarts = 1}));
-  // After this beginning, the numbers 0 to 9 are known. So the sequence takes them for another
-  // beginning only after a time without new numbers.
+  // The sequence has seen the numbers 0 to 9 since this beginning. If they come again, it takes
+  // them for another beginning only after kBeginsAgain without a newer number.
   AddRange(sequence, 0, 10, 0, kNow + SenderSequence::kBeginsAgain);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 30, .restarts = 2}));
 }

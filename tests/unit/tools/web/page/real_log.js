@@ -30,7 +30,7 @@ export function describedTypes() {
   return types;
 }
 
-/** [{channel, bytes}] of an event log. */
+/** The events of an event log, as [{channel, bytes}, ...]. */
 export function readEvents(file) {
   const log = readFileSync(file);
   const events = [];

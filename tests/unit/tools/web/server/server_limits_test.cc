@@ -32,7 +32,7 @@ using test::WebClient;
 using ::testing::HasSubstr;
 
 constexpr Duration kPatience = milliseconds(20'000);
-// Other clients need less than this on a busy machine, too.
+// A short time limit of the server. Other clients need less time than this, also on a busy machine.
 constexpr std::chrono::milliseconds kShort(2000);
 
 /// Sends each frame back. To the frame "flood", the view answers with more bytes than may wait for
@@ -61,7 +61,7 @@ class ServerLimitsTest : public ::testing::Test {
   void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1",
              bool seat = false) {
     ::testing::internal::CaptureStderr();
-    // The context may still have a handler of the server before.
+    // The context may still have a handler of the previous server.
     context_.restart();
     context_.poll();
     context_.restart();

@@ -1,5 +1,5 @@
 // Checks the posterior probability that the LiDAR is deceived. In sequences that follow the model
-// of the LiDAR's modes, the LiDAR must be deceived in a share p of the steps with posterior p.
+// of the LiDAR's modes, the LiDAR must be deceived in a share p of the steps whose posterior is p.
 #include "services/decision/conflict/over_time/lidar_modes.h"
 
 #include <algorithm>
@@ -58,8 +58,9 @@ class Lidar {
         break;
     }
     if (stray < model_.stray_share) return anywhere_m;
-    // The model adds the echo's scatter in the fog and the noise, and takes the sum as normal. The
-    // scatter has the distribution Beta(2, 20), with mean 1/11 and variance 40/(22^2 23).
+    // The model adds the echo's scatter in the fog and the noise, and treats the sum as normally
+    // distributed. The scatter has the distribution Beta(2, 20), with mean 1/11 and variance
+    // 40/(22^2 23).
     const double scatter_m2 = model_.fog_scatter_m * model_.fog_scatter_m * 40 / (22 * 22 * 23);
     return model_.fog_return_m + model_.fog_scatter_m / 11 +
            std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;
@@ -70,8 +71,8 @@ class Lidar {
   conflict::LidarMode mode_ = conflict::LidarMode::kClean;
 };
 
-/// All steps with a posterior in one interval: the sum of the posteriors (`said`), and the number
-/// of steps in which the LiDAR is deceived (`were_so`). Both have the same expected value.
+/// All steps whose posterior lies in one interval: the sum of the posteriors (`said`), and the
+/// number of steps in which the LiDAR is deceived (`were_so`). Both have the same expected value.
 struct Claims {
   double said = 0;
   double variance = 0;  // variance of the number of deceived steps

@@ -75,8 +75,8 @@ TEST(BinnedBeliefTest, ReadingsFarApartHaveOnlyTheFrameInCommon) {
 }
 
 TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
-  // The standard deviations are smaller than a bin, some bins wide, and wider than all kept bins
-  // (64 of 0.5 m).
+  // The standard deviations are smaller than a bin, as wide as several bins, and wider than all
+  // kept bins (64 bins of 0.5 m).
   for (const double std_m : {0.01, 0.4, 3.0, 40.0}) {
     const conflict::BinnedPair far = conflict::PairOnBins(Differing(2000, std_m, std_m), {});
     EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // the readings share no bin

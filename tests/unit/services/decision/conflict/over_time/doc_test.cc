@@ -15,7 +15,7 @@ namespace {
 constexpr double kSlope_pm = 10;
 constexpr double kCentre_m = 1;
 
-// The z from which this DoC was computed.
+// The conflict z, in m, that has this DoC.
 double ConflictOf(double doc) { return kCentre_m + std::log(doc / (1 - doc)) / kSlope_pm; }
 
 TEST(DocTest, HasTheTabulatedValues) {

@@ -85,7 +85,7 @@ TEST(GlrTest, FindsTheJumpWhereverItBegan) {
   double score = 0;
   for (int i = 0; i < 10; ++i) measure.Step(LidarShortBy(0, 3, 4));
   for (int i = 0; i < 6; ++i) score = measure.Step(LidarShortBy(10, 3, 4));
-  EXPECT_NEAR(score, 6 * 2.0 * 2.0 / 2, 1e-12);  // n (b/sqrt(S))^2/2 from the jump on
+  EXPECT_NEAR(score, 6 * 2.0 * 2.0 / 2, 1e-12);  // n (b/sqrt(S))^2/2, with b = 10 m, S = 25 m2
 }
 
 TEST(GlrTest, LooksNoFurtherBackThanItsWindow) {

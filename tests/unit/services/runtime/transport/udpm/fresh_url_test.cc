@@ -15,7 +15,8 @@
 namespace fogline {
 namespace {
 
-/// A socket on a UDP port; -1 if the port is taken. @param shares as LCM's sockets share a port
+/// A socket on a UDP port; -1 if the port is taken. @param shares whether the socket shares its
+/// port with other sockets, as LCM's sockets do
 int SocketOn(std::uint16_t port, bool shares) {
   const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const int yes = shares ? 1 : 0;

@@ -13,7 +13,7 @@ const CHANNELS = {
   HOST_COMMAND: "arbitration_t", FOLLOWER_COMMAND: "follower_command_t"};
 const messagesOf = (channel) => log.events.filter((event) => event.channel === channel);
 
-/** The names of columns in a CSV file as paths: "state.0" is "state[0]". */
+/** The path of a column of a CSV file: the column "state.0" has the path "state[0]". */
 function pathOf(column, type) {
   const [, name, index] = column.match(/^(.*?)(?:\.(\d+))?$/);
   if (index === undefined) return column;

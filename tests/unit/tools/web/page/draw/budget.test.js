@@ -3,7 +3,7 @@ import {test} from "node:test";
 
 import {Budget} from "../../../../../../tools/web/page/draw/budget.js";
 
-/** Lets frames of this length pass for a time. */
+/** Passes frames of this length to the budget for a time. @return the time after these frames */
 function run(budget, frame_ms, time_ms, from = 0) {
   let now = from;
   for (; now < from + time_ms; now += frame_ms) budget.frame(now);

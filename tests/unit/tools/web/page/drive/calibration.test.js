@@ -9,7 +9,7 @@ import {
 const pad = (axes, buttons = []) => (
   {id: "Wheel", mapping: "", axes, buttons: buttons.map((value) => ({value, pressed: value > 0.5}))});
 
-/** A localStorage. */
+/** A substitute for the browser's localStorage. */
 function storage() {
   const items = new Map();
   return {getItem: (name) => items.get(name) ?? null, setItem: (name, text) => items.set(name, text),

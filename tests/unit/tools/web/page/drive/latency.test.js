@@ -5,7 +5,7 @@ import {LATE_ABOVE_MS, Latency} from "../../../../../../tools/web/page/drive/lat
 import {KEYBOARD} from "../../../../../../tools/web/page/drive/person.js";
 import {Sender} from "../../../../../../tools/web/page/drive/sender.js";
 
-/** One measurement of so many ms. */
+/** Makes one measurement of `value_ms`. */
 function measure(latency, began_ms, value_ms) {
   latency.sent(latency.count, began_ms, began_ms);
   latency.published(latency.count, latency.count);
@@ -17,12 +17,12 @@ test("it lasts from the input to the first frame after a command that was made f
   const latency = new Latency();
   latency.sent(5, 1000, 1001);
   assert.equal(latency.drawn(1010), null);
-  latency.commanded(40);         // its number is not known yet
+  latency.commanded(40);         // the number of input 5 is not known yet
   assert.equal(latency.drawn(1015), null);
   latency.published(5, 41);
-  latency.commanded(40);         // made from an older input
+  latency.commanded(40);         // this command was made from an older input
   assert.equal(latency.drawn(1020), null);
-  latency.commanded(42);         // made from a newer one
+  latency.commanded(42);         // this command was made from a newer input
   assert.equal(latency.drawn(1033), 33);
   assert.equal(latency.newest, 33);
   assert.equal(latency.drawn(1050), null);

@@ -9,7 +9,7 @@ const CHANNELS = [["TRUTH", "truth_t"], ["HOST_COMMAND", "arbitration_t"], ["DRI
                   ["RADAR", "radar_t"], ["RUN", "run_t"]].map(([name, type], id) => ({id, name, type}));
 const idOf = (name) => CHANNELS.find((channel) => channel.name === name)?.id;
 
-/** The messages of a run as they come. */
+/** The messages of a run, in the order in which they come. */
 const log = realLog("/steps=20");
 const messages = log.events.filter(({channel}) => idOf(channel) !== undefined)
   .map(({channel, bytes}) => ({channel: idOf(channel), name: channel, bytes}));

@@ -5,7 +5,7 @@ import {FIRST_S, Ramps, ratesOf} from "../../../../../../tools/web/page/drive/ra
 
 const RATES = {press_ps: 1, release_ps: 3};
 
-/** Advances in looks of 20 ms, as the page does. */
+/** Advances the ramps every 20 ms, as the page does. */
 function advance(ramps, from_ms, to_ms) {
   for (let now = from_ms; now <= to_ms; now += 20) ramps.advance(now);
   return ramps.advance(to_ms);

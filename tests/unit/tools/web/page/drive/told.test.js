@@ -33,7 +33,8 @@ test("a request counts down from its begin, also if the page sees only its end",
   assert.deepEqual(countdown(request, 7, 10), {left_s: 5, share: 0.5, atMost: false});
   assert.equal(countdown(request, 10, 10).left_s, 2, "a page that was loaded 8 s after the request");
   assert.equal(countdown(request, 30, 10).left_s, 0);
-  assert.equal(countdown({...request, since_s: 32}, 31.98, 10).left_s, 10);  // the frame before
+  // The page may still have the frame of the step before the request began.
+  assert.equal(countdown({...request, since_s: 32}, 31.98, 10).left_s, 10);
 });
 
 test("if the begin of a request is not known, the page says at most how much time is left", () => {
@@ -107,7 +108,7 @@ test("a car that stops by itself answers the button, if it has not taken the ans
     answer.press("give_back", at(mode), 0);
     assert.equal(answer.words(at(mode), 1500), "");
   }
-  // The stop has become final, and the page tells the person so instead.
+  // When the stop is final, the page shows this instead of an answer to the button.
   const {MRM_DONE} = describedTypes().arbitration_t.constants;
   answer.press("take_over", at(MRM_COMFORT), 0);
   assert.equal(answer.words(at(MRM_DONE), 1500), "");
