@@ -3,12 +3,12 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include <fmt/core.h>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/write.hpp>
 
 #include "common/file.h"
 #include "tools/relay/relay.h"
@@ -72,7 +72,7 @@ void RelayClient::Start() {
 
 void RelayClient::Offer(const runtime::tcpq::Frame& message) {
   if (gone_ || deaf_ || !Wants(message.name)) return;
-  const std::size_t queued = sending_.size() + waiting_.size();
+  const std::size_t queued = Queued();
   if (queued > 0 && queued + message.wire.size() > relay_.options_.queue_bytes) {
     return Drop(fmt::format("does not read; {} bytes wait for it", queued));
   }
@@ -104,32 +104,44 @@ void RelayClient::Read() {
                           [self = shared_from_this()](error_code error, std::size_t size) {
                             if (self->gone_) return;
                             if (error) return self->Drop("");
+                            const std::size_t before = self->Queued();
                             self->Take(runtime::Bytes(self->read_).first(size));
                             if (self->gone_) return;
                             AcknowledgeAtOnce(self->socket_);
-                            self->ReadOrPause();
+                            // Only the client's own messages have come since `before`.
+                            const bool fills_itself = self->Queued() > before && self->LacksRoom();
+                            fills_itself && !self->stuck_ ? self->Pause() : self->Read();
                           });
 }
 
-bool RelayClient::IsHalfFull() const {
-  return sending_.size() + waiting_.size() > relay_.options_.queue_bytes / 2;
+bool RelayClient::LacksRoom() const {
+  const std::size_t most = relay_.options_.queue_bytes;
+  const std::size_t message = std::min(most, relay_.options_.limits.payload);
+  return Queued() + std::max(most / 2, message) > most;
 }
 
-void RelayClient::ReadOrPause() {
-  if (has_waited_ || !IsHalfFull()) return Read();
+void RelayClient::Pause() {
   paused_ = true;
   pause_.expires_after(kLongestPause);
   pause_.async_wait([self = shared_from_this()](error_code cancelled) {
-    if (cancelled || self->gone_) return;
-    self->has_waited_ = true;
-    self->ReadAfterPause();
+    // A handler may already be waiting when its timer is cancelled or set again.
+    const bool over = self->pause_.expiry() <= boost::asio::steady_timer::clock_type::now();
+    if (cancelled || !over || !self->paused_ || self->gone_) return;
+    self->stuck_ = true;
+    self->EndPause();
   });
 }
 
-void RelayClient::ReadAfterPause() {
-  if (!std::exchange(paused_, false)) return;
+void RelayClient::EndPause() {
+  paused_ = false;
   pause_.cancel();
   Read();
+}
+
+void RelayClient::Progress() {
+  stuck_ = false;
+  if (!paused_ || gone_) return;
+  LacksRoom() ? Pause() : EndPause();
 }
 
 void RelayClient::Take(runtime::Bytes bytes) {
@@ -162,21 +174,29 @@ void RelayClient::Handle(const runtime::tcpq::Frame& frame) {
 void RelayClient::Write() {
   if (!sending_.empty() || waiting_.empty() || gone_) return;
   std::swap(sending_, waiting_);
-  asio::async_write(socket_, asio::buffer(sending_),
-                    [self = shared_from_this()](error_code error, std::size_t) {
-                      self->sending_.clear();
-                      // If the queue was long, its memory is freed.
-                      if (self->sending_.capacity() > kWorthACall) self->sending_.shrink_to_fit();
-                      if (error) {
-                        self->deaf_ = true;
-                        self->waiting_.clear();
-                      }
-                      if (!self->IsHalfFull() && !self->gone_) {
-                        self->has_waited_ = false;
-                        self->ReadAfterPause();
-                      }
-                      self->Write();
-                    });
+  WriteRest();
+}
+
+void RelayClient::WriteRest() {
+  socket_.async_write_some(asio::buffer(sending_) + sent_,
+                           [self = shared_from_this()](error_code error, std::size_t size) {
+                             self->sent_ += size;
+                             if (error) {
+                               self->deaf_ = true;
+                               self->waiting_.clear();
+                             }
+                             const bool rest = !error && self->sent_ < self->sending_.size();
+                             if (!rest) {
+                               self->sending_.clear();
+                               self->sent_ = 0;
+                               // If the queue was long, its memory is freed.
+                               if (self->sending_.capacity() > kWorthACall) {
+                                 self->sending_.shrink_to_fit();
+                               }
+                             }
+                             self->Progress();
+                             rest ? self->WriteRest() : self->Write();
+                           });
 }
 
 }  // namespace fogline::relay

