@@ -30,6 +30,10 @@ FollowedNetwork::FollowedNetwork(std::string url, Following following,
       }) {
   Open();
   if (following_ != Following::kNothing) listener_.emplace(network_->bus.url());
+  // Within this time every run has announced itself, so the first run to follow is the newest.
+  if (following_ == Following::kFirstRun) {
+    follow_at_ = Clock::now() + runtime::kBeaconEvery + kFollowEvery;
+  }
 }
 
 FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher)

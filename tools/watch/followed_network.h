@@ -1,5 +1,5 @@
 // The network that a program observes: the network of its URL. Without a URL the program also
-// observes the network of the newest run that is announced on this machine. The program sends
+// observes the network of a run that is announced on this machine (Following). The program sends
 // nothing.
 #pragma once
 
