@@ -23,11 +23,19 @@ namespace {
 using Level = Finding::Level;
 namespace fs = std::filesystem;
 
-/// What to do if a target of the build is missing: the command that builds it, or, for installed
-/// programs, `otherwise`.
-std::string BuildOr(std::string_view target, const char* otherwise) {
-  const std::string command = processes::BuildCommand(target);
-  return command.empty() ? otherwise : command;
+/// What to do if programs are missing or of another version.
+std::string HowToGetPrograms() {
+  const std::string command = processes::BuildCommand("fogline_programs");
+  return command.empty() ? "install all programs of one version of Fogline" : command;
+}
+
+/// What to do if the message types for lcm-spy are missing. CMake builds them only if it has found
+/// a JDK, so it must look again.
+std::string HowToGetTypes() {
+  const std::string build = processes::BuildFolder();
+  return "apt-get install default-jdk; " +
+         (build.empty() ? "build and install Fogline again"
+                        : fmt::format("cmake {0} && ninja -C {0} fogline_lcmtypes_java", build));
 }
 
 void ExamineJava(Findings& findings) {
@@ -63,8 +71,7 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
   }
   findings.push_back({"lcm_spy_types", Level::kWarning,
                       "the message types for lcm-spy are not built: it decodes nothing",
-                      "apt-get install default-jdk; " +
-                          BuildOr("fogline_lcmtypes_java", "build and install Fogline again")});
+                      HowToGetTypes()});
 }
 
 /// First line of the output of each role's program when it is called with --version.
@@ -120,7 +127,7 @@ void ExaminePrograms(const fs::path& programs, Findings& findings) {
          version == versions.end()
              ? fmt::format("{} cannot be run", program)
              : fmt::format("{} is \"{}\", but fogline is \"{}\"", program, version->second, own),
-         BuildOr("fogline_programs", "install all programs of one version of Fogline")});
+         HowToGetPrograms()});
   }
   if (!good) return;
   findings.push_back(

@@ -156,14 +156,19 @@ std::string HowItEnded(int status) {
 
 std::filesystem::path ProgramBeside(std::string_view name) { return OwnFolder() / name; }
 
-std::string BuildCommand(std::string_view target) {
+std::string BuildFolder() {
   std::error_code error;
   const std::filesystem::path build = OwnFolder().parent_path();
   if (!std::filesystem::exists(build / "build.ninja", error)) return "";
   const std::filesystem::path here = std::filesystem::current_path(error);  // "" if it is deleted
   const std::filesystem::path from_here = build.lexically_relative(here);
   const bool is_below = !from_here.empty() && *from_here.begin() != "..";
-  return fmt::format("ninja -C {} {}", ShellWord((is_below ? from_here : build).string()), target);
+  return ShellWord((is_below ? from_here : build).string());
+}
+
+std::string BuildCommand(std::string_view target) {
+  const std::string build = BuildFolder();
+  return build.empty() ? "" : fmt::format("ninja -C {} {}", build, target);
 }
 
 std::string HowToBuild(std::string_view name) {

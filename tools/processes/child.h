@@ -79,6 +79,9 @@ std::string HowItEnded(int status);
 
 /// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
+/// The build folder of the running program, as seen from the working folder and quoted for a shell;
+/// "" if the program is not in a build folder.
+std::string BuildFolder();
 /// The command that builds a target of CMake; "" if the running program is not in a build folder.
 std::string BuildCommand(std::string_view target);
 /// The end of an error text about a missing program that not every build has. It names the command
