@@ -91,8 +91,8 @@ std::vector<std::string> Spaced(std::string_view text) {
   return values;
 }
 
-/// Refuses values that are equal, also if they are written in two ways, such as 0.5 and 0.50, or 0
-/// and -0.
+/// Refuses values that are equal, also if a number is written in two ways, such as 0.5 and 0.50, or
+/// 0 and -0.
 /// @throws InputError
 void RefuseEqual(const std::string& argument, const std::vector<std::string>& values) {
   std::set<std::string> known;
