@@ -171,8 +171,8 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                  {"The wait costs nothing if the deceived sensor is left out meanwhile.",
                   {3},
                   InSet::kOpposite}},
-            .why = "In set 3 leaving out the deceived sensor costs safety, and the harm of "
-                   "the wait is not certain."},
+            .why = "In set 3 the wait costs safety although the deceived sensor is left out, and "
+                   "the harm of a wait with this sensor is not certain."},
        .side = {.claims = {{.study = "takeover",
                             .says = "With a false echo, leaving out the deceived sensor during a "
                                     "wait is safer than a driver without a wait.",
