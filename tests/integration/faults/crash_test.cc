@@ -177,6 +177,8 @@ TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   // WHEN the first driver continues, THEN it leaves the run to the second driver
   first.Signal(SIGCONT);
   EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
+  // The first driver would take the role again if the second one had no processor for a second.
+  first.Signal(SIGTERM);
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);
   EXPECT_EQ(second.Wait(), 0) << second.Err();
 }
