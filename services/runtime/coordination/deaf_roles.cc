@@ -58,9 +58,13 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     // producer, all messages come late and the role can use none of them. In this case late
     // messages do not count.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
-    const std::int64_t published = speakers_[static_cast<std::size_t>(from)].ticks;
+    const Speaker& producer = speakers_[static_cast<std::size_t>(from)];
     const bool came = !awaited && age < since;
-    if (first || late || came || published < ear.published) ear.published = published;
+    if (first || late || came || producer.ticks < ear.published) {
+      ear.published.reset();
+    } else if (!ear.published && producer.heard > speaker.heard) {
+      ear.published = producer.ticks;
+    }
     if (late) {
       ear.missed = ear.unsure = {};
     } else if (!Computes(from, now)) {
@@ -69,8 +73,7 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
       if (silent <= kSteady && !first) ear.unsure += silent;
       // The silence counts as missed only when the producer has reported a further step. Without a
       // further step, the producer has published no message that could be missing.
-      const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
-      if (computed) ear.missed += std::exchange(ear.unsure, {});
+      if (producer.advanced > speaker.heard) ear.missed += std::exchange(ear.unsure, {});
     }
     // If a message has come, only the time since this message counts as missed.
     if (!awaited) {
@@ -99,7 +102,8 @@ bool DeafRoles::IsAheadOf(Role role, std::int64_t step, TimePoint now) const {
 }
 
 bool DeafRoles::IsSure(const Ear& ear, Role from) const {
-  const std::int64_t published = speakers_[static_cast<std::size_t>(from)].ticks - ear.published;
+  if (!ear.published) return false;
+  const std::int64_t published = speakers_[static_cast<std::size_t>(from)].ticks - *ear.published;
   return published >= std::min<std::int64_t>(kSureMessages, ear.missed / period_ / 2);
 }
 

@@ -50,8 +50,10 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    std::int64_t published = 0;  // the producer's `ticks` when the last message came
-    Duration unsure{};           // time to add to `missed` when the producer reports a further step
+    Duration unsure{};  // time to add to `missed` when the producer reports a further step
+    /// The producer's `ticks` in its first STATUS after the last message; nullopt until then. The
+    /// STATUS before the last message does not count all messages up to the last one.
+    std::optional<std::int64_t> published;
   };
   struct Speaker {
     TimePoint heard{};

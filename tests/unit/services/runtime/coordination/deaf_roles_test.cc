@@ -86,6 +86,28 @@ TEST_F(DeafRolesTest, TheLossOfTheFewMessagesOfASlowProducerMakesNoRoleDeaf) {
   EXPECT_TRUE(IsDeaf());
 }
 
+TEST_F(DeafRolesTest, AMessageThatCameIsNotMissingIfTheStatusBeforeItWasLost) {
+  // GIVEN a slow producer that has published three messages since its last STATUS. The role has
+  // received the third one.
+  world_ticks_ = 1;
+  Pass(1);
+  now_ += milliseconds(200);
+  age_ms_ = 0;
+  SayRadar({.age_ms = age_ms_});
+  world_ticks_ = 4;
+  // WHEN the role does not receive the next nine messages, THEN this can be chance
+  for (int i = 0; i < 9; ++i) {
+    Pass(2);
+    ++*world_ticks_;
+  }
+  Pass(1);
+  EXPECT_FALSE(IsDeaf());
+  // WHEN it does not receive the tenth message either, THEN this cannot be chance
+  ++*world_ticks_;
+  Pass(1);
+  EXPECT_TRUE(IsDeaf());
+}
+
 TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
   Pass(5);
   EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
