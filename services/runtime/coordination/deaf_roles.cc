@@ -11,13 +11,15 @@ namespace fogline::runtime {
 namespace {
 
 // If the network loses the inputs of a role, the role recovers within a second. A role counts as
-// deaf after kDeaf, which is twice this time, or after kDeafPeriods periods if these are longer.
+// deaf after kDeaf, which is twice this time. If kDeafPeriods steps of the run take longer than
+// kDeaf, the role counts as deaf only after the time of these steps.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
-// Three times the longest interval between two STATUS messages. If two STATUS messages of a role
-// are further apart, the time between them is not counted.
+// Three times the longest interval between two STATUS messages of a role. If two STATUS messages of
+// a role are further apart than this, the time between them is not counted.
 constexpr Duration kSteady = milliseconds(600);
-// A network that loses 30 % of all messages loses this many in a row with probability 6e-6.
+// A network that loses 30 % of all messages loses this many in a row with probability 6e-6. So if a
+// role lacks this many messages in a row, the network is hardly the cause.
 constexpr std::int64_t kSureMessages = 10;
 // The step of a producer is estimated from its STATUS and the time since then. A role counts as
 // ahead of the producer if it is more than this many steps beyond the estimate. The producer itself
@@ -47,9 +49,10 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     Ear& ear = speaker.ears[channel];
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
-    // The role measures the age of an input on its own clock. The age grows until a message comes,
-    // and does not depend on the time at which the STATUS is read. Until its first message
-    // (INPUT_AWAITED) an input has no age. Then the silence is the time since the role's previous
+    // `silent` is the time without a message since the role's previous STATUS. The role measures
+    // the age of an input on its own clock. The age grows until a message comes, and does not
+    // depend on the time at which the STATUS is read. An input that has not received a message yet
+    // (INPUT_AWAITED) has no age. In this case, `silent` is the whole time since the previous
     // STATUS.
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
@@ -59,7 +62,7 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     // messages do not count.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
     const Speaker& producer = speakers_[static_cast<std::size_t>(from)];
-    const bool came = !awaited && age < since;
+    const bool came = !awaited && (age < since || age < ear.age);
     if (first || late || came || producer.ticks < ear.published) {
       ear.published.reset();
     } else if (!ear.published && producer.heard > speaker.heard) {

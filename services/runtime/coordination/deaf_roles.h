@@ -51,8 +51,8 @@ class DeafRoles {
     std::int64_t late = 0;
     Duration missed{};
     Duration unsure{};  // time to add to `missed` when the producer reports a further step
-    /// The producer's `ticks` in its first STATUS after the last message; nullopt until then. The
-    /// STATUS before the last message does not count all messages up to the last one.
+    /// The producer's `ticks` in a STATUS that came after the role had reported the last message;
+    /// nullopt until then. An earlier STATUS does not count all messages up to the last one.
     std::optional<std::int64_t> published;
   };
   struct Speaker {
@@ -65,7 +65,7 @@ class DeafRoles {
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
   /// Whether the producer has published so many messages that even a bad network would not lose all
-  /// of them. Only the messages after the last one that the role received are counted. Their number
+  /// of them. Only messages after the last message that the role received are counted. Their number
   /// is enough if it is at least kSureMessages, or at least half of the number of messages that are
   /// due in the time `ear.missed`.
   bool IsSure(const Ear& ear, Role from) const;

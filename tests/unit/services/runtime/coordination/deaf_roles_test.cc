@@ -48,6 +48,14 @@ class DeafRolesTest : public testing::Test {
       SayRadar({.age_ms = age_ms_, .state = state});
     }
   }
+  /// The world computes a step in 400 ms, `messages` times. The messages of these steps do not
+  /// come.
+  void Lose(int messages) {
+    for (int i = 0; i < messages; ++i) {
+      Pass(2);
+      ++*world_ticks_;
+    }
+  }
   bool IsDeaf() const { return deaf_.Of(Role::kRadar).has_value(); }
 
   runtime::DeafRoles deaf_{kPeriod};
@@ -73,15 +81,12 @@ TEST_F(DeafRolesTest, TheLossOfTheFewMessagesOfASlowProducerMakesNoRoleDeaf) {
   // GIVEN a producer that leaves out most steps: it computes one step in 400 ms
   world_ticks_ = 1;
   Pass(1);
-  for (int i = 1; i < 10; ++i) {
-    Pass(2);
-    ++*world_ticks_;
-  }
-  // WHEN the role has received nothing for 3.6 s, THEN this can be chance
+  Lose(9);
+  // WHEN the role has received nothing for 3.6 s, THEN it is not deaf: so few lost messages can be
+  // chance
   EXPECT_FALSE(IsDeaf());
-  // WHEN ten messages have not come, THEN this cannot be chance
-  Pass(2);
-  ++*world_ticks_;
+  // WHEN ten messages have not come, THEN the role is deaf: this cannot be chance
+  Lose(1);
   Pass(1);
   EXPECT_TRUE(IsDeaf());
 }
@@ -94,16 +99,49 @@ TEST_F(DeafRolesTest, AMessageThatCameIsNotMissingIfTheStatusBeforeItWasLost) {
   now_ += milliseconds(200);
   age_ms_ = 0;
   SayRadar({.age_ms = age_ms_});
+  now_ += milliseconds(200);
+  age_ms_ = 200;
+  SayRadar({.age_ms = age_ms_});
   world_ticks_ = 4;
-  // WHEN the role does not receive the next nine messages, THEN this can be chance
-  for (int i = 0; i < 9; ++i) {
-    Pass(2);
-    ++*world_ticks_;
-  }
+  // WHEN the role does not receive the next nine messages, THEN it is not deaf: this can be chance
+  Lose(9);
   Pass(1);
   EXPECT_FALSE(IsDeaf());
-  // WHEN it does not receive the tenth message either, THEN this cannot be chance
+  // WHEN it does not receive the tenth message either, THEN it is deaf: this cannot be chance
   ++*world_ticks_;
+  Pass(1);
+  EXPECT_TRUE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, AMessageThatCameIsNotMissingForAReaderThatIsLate) {
+  // GIVEN a reader that reads two STATUS messages of the role within 1 ms. A message has come to
+  // the role between them.
+  world_ticks_ = 1;
+  Pass(3);
+  world_ticks_ = 9;
+  now_ += milliseconds(1);
+  SayWorld();
+  age_ms_ = 100;
+  SayRadar({.age_ms = age_ms_});
+  // WHEN the role does not receive the next two messages, THEN it is not deaf
+  Pass(9);
+  world_ticks_ = 11;
+  Pass(1);
+  EXPECT_FALSE(IsDeaf());
+}
+
+TEST_F(DeafRolesTest, TheMessagesOfAProducerThatWasStartedAgainAreCountedFromItsStart) {
+  // GIVEN a slow producer whose last nine messages have not come, and which is then started again
+  world_ticks_ = 50;
+  Pass(2);
+  world_ticks_ = 59;
+  Pass(10);
+  EXPECT_FALSE(IsDeaf());
+  world_ticks_ = 1;
+  Pass(2);
+  EXPECT_FALSE(IsDeaf());
+  // WHEN ten messages of the new process have not come, THEN the role is deaf
+  world_ticks_ = 11;
   Pass(1);
   EXPECT_TRUE(IsDeaf());
 }
@@ -172,7 +210,8 @@ TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
 
 TEST_F(DeafRolesTest, AtTheEndNothingIsMissedOfStepsThatNeverWere) {
   Pass(3);
-  // WHEN the world has computed its last step, and the role has not computed this step yet
+  // WHEN the world has computed its last step, THEN the role is not deaf: it misses no message
+  // while the world computes no step
   for (int i = 0; i < 5; ++i) {
     now_ += milliseconds(200);
     age_ms_ += 200;
@@ -195,7 +234,7 @@ TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {
 }
 
 TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
-  // GIVEN a reader that reads three STATUS messages together, and then no message for half a second
+  // GIVEN a reader of STATUS that gets three messages together, and then none for half a second
   for (int i = 1; i <= 12; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);
     world_step_ += 2;
@@ -204,7 +243,7 @@ TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
     SayRadar({.age_ms = age_ms_});
   }
   EXPECT_TRUE(IsDeaf());
-  // WHEN the radar's input gets messages again, THEN the reader sees these messages, too
+  // WHEN the radar's input gets messages again, THEN the radar is not deaf any more
   age_ms_ = 0;
   for (int i = 1; i <= 6; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);
