@@ -175,7 +175,7 @@ class TableMaker {
     const std::vector<Value> answers = AnswersOf(plan_.plan, story);
     const std::vector<Value> markers = MarkersOf(story);
     const bool has_run = story.state == TrialState::kToAsk || story.state == TrialState::kDone;
-    // A run that broke off has no measures, because they would be those of a part of the run.
+    // A run that broke off has no measures, because they would describe only a part of the run.
     std::vector<Value> measures = MetricsOf({});
     for (Value& value : measures) value.value = "";
     std::string seed;
@@ -233,7 +233,7 @@ bool IsTrialTable(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string first;
   std::getline(in, first);
-  return first.empty() || first.starts_with("participant,trial,practice,condition,");
+  return first.starts_with("participant,trial,practice,condition,");
 }
 
 std::string UtcText(std::int64_t unix_us) {

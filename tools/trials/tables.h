@@ -10,12 +10,13 @@
 namespace fogline::trials {
 
 struct Tables {
-  /// A row for each trial that has a log: participant, trial, condition, order, seed, log, one
-  /// column for each item of a questionnaire, and one for each measure of the run, of its first
-  /// request to take over, and of the latency of a person's inputs.
+  /// A row for each trial that has a log. The first columns describe the trial: participant, trial,
+  /// condition, log and so on. Then comes one column for each item of a questionnaire. The last
+  /// columns are the measures of the run, of its first request to take over, and of the latency of
+  /// a person's inputs.
   std::string trials;
-  /// A row for each answer, measure and marker: participant, trial, condition, kind, item, value,
-  /// unit.
+  /// A row for each answer, measure and marker: participant, trial, practice, condition, kind,
+  /// item, value, unit, time_s.
   std::string values;
   std::int64_t rows = 0;            // of `trials`
   std::int64_t missing = 0;         // trials that are not done, practice runs included
@@ -26,7 +27,7 @@ struct Tables {
 /// 4180. Each line ends with a line feed.
 Tables MakeTables(const PlanFile& plan, const Results& results);
 
-/// Whether the file is one of these tables, or empty.
+/// Whether the file is one of these tables.
 bool IsTrialTable(const std::filesystem::path& file);
 
 /// A time as text, such as "2026-11-23T15:04:05Z". @param unix_us microseconds since 1970 (UTC)

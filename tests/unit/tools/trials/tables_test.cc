@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -160,6 +161,19 @@ TEST_F(TablesTest, ARunThatBrokeOffHasNoMeasures) {
   for (const char* name : {"duration_s", "requests", "first_request_outcome"}) {
     EXPECT_EQ(row.at(name), "") << name;
   }
+}
+
+TEST(IsTrialTableTest, IsTrueForATableOfTrialsAlone) {
+  const test::ScratchFolder folder;
+  const auto is_table = [&folder](std::string_view content) {
+    const std::filesystem::path file = folder.File("table.csv");
+    std::ofstream(file) << content;
+    return IsTrialTable(file);
+  };
+  EXPECT_TRUE(is_table("participant,trial,practice,condition,replaced\n"));
+  EXPECT_FALSE(is_table("time_s,gap_m\n"));
+  EXPECT_FALSE(is_table("\nthe notes of the experimenter\n"));
+  EXPECT_FALSE(is_table(""));
 }
 
 }  // namespace
