@@ -48,17 +48,12 @@ std::string EvdevDevice::Open() {
     Close();
     return fmt::format("no input device: {}", std::strerror(-error));
   }
-  std::optional<DeviceMap> map = UsualMap(FeaturesOf(device_));
-  const bool named = !names_.throttle.empty() && !names_.brake.empty();
-  if (!map && !named) {
+  const std::optional<DeviceMap> map = MapOf(FeaturesOf(device_), names_);
+  if (!map) {
     Close();
-    return "has no pedals that Fogline knows; name its axes with --throttle and --brake";
+    return "Fogline does not know its two pedals; name their axes with --throttle and --brake";
   }
-  map_ = map.value_or(DeviceMap());
-  if (!names_.throttle.empty()) map_.throttle = ParsePedal(names_.throttle, "--throttle");
-  if (!names_.brake.empty()) map_.brake = ParsePedal(names_.brake, "--brake");
-  if (!names_.take_over.empty()) map_.take_over = ParseButton(names_.take_over, "--take-over");
-  if (!names_.give_back.empty()) map_.give_back = ParseButton(names_.give_back, "--give-back");
+  map_ = *map;
   for (const auto& pedal : {map_.throttle, map_.brake}) {
     if (!pedal || libevdev_has_event_code(device_, EV_ABS, static_cast<unsigned>(pedal->code)))
       continue;
@@ -85,9 +80,9 @@ PedalState EvdevDevice::Read(TimePoint now) {
   if (device_ != nullptr) ReadEvents(now);
   if (device_ == nullptr) return {.present = false, .axes = {}, .at = at_};
   PedalState state{.axes = {}, .at = at_};
-  if (map_.throttle) {
-    state.throttle = TravelOf(map_.throttle, throttle_moved_);
-    state.brake = TravelOf(map_.brake, brake_moved_);
+  if (map_.throttle && map_.brake) {
+    state.throttle = TravelOf(*map_.throttle, throttle_moved_);
+    state.brake = TravelOf(*map_.brake, brake_moved_);
   } else {
     keys_.MoveTo(now);
     state.throttle = keys_.throttle();
@@ -145,10 +140,10 @@ AxisRange EvdevDevice::RangeOf(int code) const {
           .most = libevdev_get_abs_maximum(device_, axis)};
 }
 
-double EvdevDevice::TravelOf(const std::optional<PedalAxis>& pedal, bool moved) const {
-  if (!pedal || !moved) return 0;
-  const auto axis = static_cast<unsigned>(pedal->code);
-  return pedal->Travel(libevdev_get_event_value(device_, EV_ABS, axis), RangeOf(pedal->code));
+double EvdevDevice::TravelOf(const PedalAxis& pedal, bool moved) const {
+  if (!moved) return 0;
+  const auto axis = static_cast<unsigned>(pedal.code);
+  return pedal.Travel(libevdev_get_event_value(device_, EV_ABS, axis), RangeOf(pedal.code));
 }
 
 }  // namespace fogline::drive

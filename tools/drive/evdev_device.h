@@ -16,21 +16,13 @@ struct input_event;
 
 namespace fogline::drive {
 
-/// The axes and buttons that the user has named. "" stands for the usual axis or button
-/// (UsualMap()).
-struct DeviceNames {
-  std::string throttle;
-  std::string brake;
-  std::string take_over;
-  std::string give_back;
-};
-
 /// Reads the pedals and buttons of an input device. A pedal counts as released until its axis has
 /// moved, because wheels report wrong values before the first movement. While the device is
 /// unplugged, no person is present. When the device is plugged in again, this class opens it again.
 class EvdevDevice final : public PedalSource {
  public:
-  /// @throws InputError if the device cannot be read, or has no pedals
+  /// @throws InputError if the device cannot be read, if MapOf() finds no map for it, or if the
+  ///     device lacks an axis of this map; also as ParsePedal() and ParseButton()
   EvdevDevice(std::filesystem::path path, const DeviceNames& names, const PersonSection& person);
   ~EvdevDevice() override;
 
@@ -48,7 +40,7 @@ class EvdevDevice final : public PedalSource {
   void ReadEvents(TimePoint now);
   void Take(const input_event& event, TimePoint now);
   AxisRange RangeOf(int code) const;
-  double TravelOf(const std::optional<PedalAxis>& pedal, bool moved) const;
+  double TravelOf(const PedalAxis& pedal, bool moved) const;
 
   std::filesystem::path path_;
   DeviceNames names_;

@@ -57,4 +57,16 @@ int ParseButton(std::string_view text, std::string_view option) {
   return code;
 }
 
+std::optional<DeviceMap> MapOf(const DeviceFeatures& features, const DeviceNames& names) {
+  const std::optional<DeviceMap> usual = UsualMap(features);
+  DeviceMap map = usual.value_or(DeviceMap());
+  if (!names.throttle.empty()) map.throttle = ParsePedal(names.throttle, "--throttle");
+  if (!names.brake.empty()) map.brake = ParsePedal(names.brake, "--brake");
+  if (!names.take_over.empty()) map.take_over = ParseButton(names.take_over, "--take-over");
+  if (!names.give_back.empty()) map.give_back = ParseButton(names.give_back, "--give-back");
+  if (!map.throttle && !map.brake && usual) return map;  // the arrow keys are the pedals
+  if (!map.throttle || !map.brake || map.throttle->code == map.brake->code) return std::nullopt;
+  return map;
+}
+
 }  // namespace fogline::drive

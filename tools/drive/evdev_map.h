@@ -50,7 +50,16 @@ struct DeviceFeatures {
   bool arrow_keys = false;     // KEY_UP and KEY_DOWN
 };
 
-/// The use of a device's axes and keys. If the device has no pedals, its keys up and down are the
+/// The axes and buttons that the user has named. "" stands for the usual axis or button
+/// (UsualMap()).
+struct DeviceNames {
+  std::string throttle;
+  std::string brake;
+  std::string take_over;
+  std::string give_back;
+};
+
+/// The use of a device's axes and keys. Without a throttle axis, the arrow keys up and down are the
 /// pedals.
 struct DeviceMap {
   std::optional<PedalAxis> throttle;
@@ -70,17 +79,24 @@ struct DeviceMap {
 /// The third row is for wheels. Their axes have the greatest value when the pedal is released, as
 /// on Logitech's wheels.
 ///
-/// The buttons to take over and to give back are the south (A) and the east (B) button of a
-/// gamepad, the first two buttons of a wheel, and space and g of a keyboard.
-/// @return nullopt if the device has neither pedals nor keys
+/// The buttons to take over and to give back are, in this order: south (A) and east (B) of a
+/// gamepad, the first and the second button of a wheel, or the keys space and g of a keyboard.
+/// @return nullopt if the device has neither pedals nor arrow keys
 std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
 
 /// A pedal as the user names it: "ABS_RZ", or "-ABS_RZ" if the axis has its greatest value when the
 /// pedal is released.
-/// @throws InputError that names `option` if the kernel has no such axis
+/// @throws InputError that names `option` if the kernel has no axis of this name
 PedalAxis ParsePedal(std::string_view text, std::string_view option);
 /// A button as the user names it: "BTN_SOUTH" or "KEY_SPACE".
-/// @throws InputError that names `option` if the kernel has no such button
+/// @throws InputError that names `option` if the kernel has no button of this name
 int ParseButton(std::string_view text, std::string_view option);
+
+/// The usual map of a device, with the axes and buttons that the user has named.
+/// @return nullopt if the device has neither pedals nor arrow keys, or if only one of the pedals
+/// has
+///     an axis, or if both have the same axis
+/// @throws InputError as ParsePedal() and ParseButton()
+std::optional<DeviceMap> MapOf(const DeviceFeatures& features, const DeviceNames& names);
 
 }  // namespace fogline::drive

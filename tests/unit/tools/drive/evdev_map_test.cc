@@ -75,5 +75,31 @@ TEST(ParsePedalTest, ReadsANameAndItsDirection) {
   EXPECT_NE(test::ErrorOf([] { drive::ParseButton("A", "--take-over"); }), "");
 }
 
+TEST(MapOfTest, UsesTheNamedAxesAndButtons) {
+  const auto pedals = drive::MapOf({.gas_and_brake = true}, {.brake = "-ABS_RZ"});
+  ASSERT_TRUE(pedals && pedals->throttle && pedals->brake);
+  EXPECT_EQ(pedals->throttle->code, ABS_GAS);
+  EXPECT_EQ(pedals->brake->code, ABS_RZ);
+  EXPECT_TRUE(pedals->brake->inverted);
+  const auto unknown = drive::MapOf({}, {.throttle = "ABS_X", .brake = "ABS_Y"});
+  ASSERT_TRUE(unknown && unknown->throttle && unknown->brake);
+  EXPECT_EQ(unknown->throttle->code, ABS_X);
+  const auto keyboard = drive::MapOf({.arrow_keys = true}, {.give_back = "KEY_B"});
+  ASSERT_TRUE(keyboard);
+  EXPECT_EQ(keyboard->take_over, KEY_SPACE);
+  EXPECT_EQ(keyboard->give_back, KEY_B);
+  EXPECT_TRUE(test::ErrorOf([] {
+                drive::MapOf({.arrow_keys = true}, {.brake = "NONE"});
+              }).starts_with("error: --brake NONE: no axis"));
+}
+
+TEST(MapOfTest, IsNoneUnlessEachPedalHasAnAxisOfItsOwn) {
+  EXPECT_FALSE(drive::MapOf({.gas_and_brake = true}, {.throttle = "ABS_BRAKE"}));
+  EXPECT_FALSE(drive::MapOf({.arrow_keys = true}, {.throttle = "ABS_X"}));
+  EXPECT_FALSE(drive::MapOf({.arrow_keys = true}, {.brake = "ABS_X"}));
+  EXPECT_FALSE(drive::MapOf({}, {.brake = "ABS_X"}));
+  EXPECT_FALSE(drive::MapOf({}, {}));
+}
+
 }  // namespace
 }  // namespace fogline
