@@ -44,7 +44,7 @@ std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
     for (const RoleInfo& info : kRoles) {
       if (info.name == name) return info.role;
     }
-    return Role::kRunner;  // unknown role: no role may send this, and the runner sends no STATUS
+    return Role::kRunner;  // unknown role: allows only the runner, which sends no STATUS
   }
   if (channel == ChannelOf<resend_t>().name) return std::nullopt;
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);
@@ -81,7 +81,8 @@ struct Wiped : std::array<T, kSize> {
 };
 
 constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SigningKey::Secret>;
-// Room for a key, its line end and one more character. A longer file is not a key.
+// Room for a key, a line end of two characters, and one more character. A file that fills all this
+// room is too long for a key.
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
 /// Reads a file into `text`, at most until `text` is full.
@@ -98,8 +99,8 @@ ssize_t ReadAll(int fd, KeyText& text) {
   return static_cast<ssize_t>(size);
 }
 
-/// Whether a regular file was opened. A folder cannot be read, and a pipe or device may have no
-/// data yet or no end.
+/// Whether a regular file was opened. Other files must not be read: a folder cannot be read, and a
+/// pipe or device may have no data yet or no end.
 bool IsFile(int fd) {
   struct stat info {};
   return fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
@@ -139,7 +140,7 @@ SigningKey SigningKey::Load(const std::filesystem::path& file) {
   std::string_view digits(text.data(), static_cast<std::size_t>(size));
   while (digits.ends_with('\n') || digits.ends_with('\r')) digits.remove_suffix(1);
   SigningKey key(Secret{});
-  const bool whole = digits.size() == kKeyDigits &&
+  const bool whole = static_cast<std::size_t>(size) < text.size() && digits.size() == kKeyDigits &&
                      sodium_hex2bin(key.secret_.data(), key.secret_.size(), digits.data(),
                                     digits.size(), nullptr, nullptr, nullptr) == 0;
   if (!whole) {
@@ -199,7 +200,7 @@ MessageSigner::Tag MessageSigner::TagOf(std::string_view channel, const Sender& 
   crypto_generichash_update(&state, payload.data(), payload.size());
   Tag tag{};
   crypto_generichash_final(&state, tag.data(), tag.size());
-  sodium_memzero(&state, sizeof(state));  // the state begins with the key
+  sodium_memzero(&state, sizeof(state));  // the state may still contain the key
   return tag;
 }
 

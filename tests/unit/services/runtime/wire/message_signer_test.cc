@@ -102,7 +102,8 @@ TEST(MessageSignerTest, RefusesOtherKeysAndOtherChannels) {
 }
 
 TEST(MessageSignerTest, TakesNoSenderForAnother) {
-  // The recorder may send this message, too, but the radar has signed it.
+  // The recorder, too, may send messages on RADAR. But the radar has signed this message. So the
+  // message is refused if it names the recorder as its sender.
   runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
   Message message = Copy(signer.Sign("RADAR", kRadar));
   constexpr std::size_t kSenderFromTheEnd = 17;  // the second byte of the sender, before the tag
@@ -221,12 +222,14 @@ TEST(SigningKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {
   };
   runtime::SigningKey::Secret expected{};
   expected.fill(0xaa);
-  for (const std::string& good : {digits, digits + "\n", digits + "\r\n", std::string(64, 'A')}) {
+  for (const std::string& good :
+       {digits, digits + "\n", digits + "\n\n", digits + "\r\n", std::string(64, 'A')}) {
     EXPECT_EQ(load(good), expected);
   }
   for (const std::string& bad :
        {std::string(), digits + "a", digits + digits, digits.substr(1), "x" + digits.substr(1),
-        " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32), std::string(64, '0')}) {
+        " " + digits, digits.substr(0, 32) + "\n" + digits.substr(32), std::string(64, '0'),
+        digits + "\n\n\n", digits + "\r\n\r\n", digits + "\n\n\n" + digits}) {
     EXPECT_THROW(load(bad), InputError) << bad;
   }
   EXPECT_THROW(runtime::SigningKey::Load(folder.File("none")), InputError);
