@@ -29,8 +29,8 @@ constexpr Duration kStallLimit = milliseconds(5000);
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 // The client stores at most this many bytes from the relay while the relay accepts no data.
 constexpr std::size_t kMaxReceived = 64 << 20;
-// After publishing this many bytes without reading, the client reads: a relay disconnects clients
-// that read nothing.
+// After publishing this many bytes without reading, the client reads, because a relay disconnects
+// clients that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
 /// Opens a file that is never readable. The file replaces a lost connection, so that a program that
@@ -293,13 +293,13 @@ bool Client::Try(Duration timeout) {
     phase_ = Phase::kConnection;
   }
   if (now >= answer_by_) throw CannotReach(endpoint_, ETIMEDOUT);
-  timeout = std::min(timeout, answer_by_ - now);
+  const TimePoint end = now + std::min(timeout, answer_by_ - now);
   if (phase_ == Phase::kConnection) {
-    if (!Connected(timeout)) return false;
+    if (!Connected(end - now)) return false;
     Greet();
     phase_ = Phase::kGreeting;
   }
-  if (!Greeted(timeout)) return false;
+  if (!Greeted(std::max(Duration::zero(), end - Clock::now()))) return false;
   lost_ = false;
   return true;
 }
