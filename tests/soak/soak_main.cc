@@ -151,7 +151,8 @@ class Soak {
 
   std::int64_t NumKinds() const { return static_cast<std::int64_t>(kinds_.size()); }
 
-  /// Whether there was a run of this kind, and its fault has hit no run.
+  /// Whether there were runs of this kind, but no fault of this kind hit a run. Always false for a
+  /// kind that causes no fault, or causes its faults by options of `fogline run` (most_strikes 0).
   bool Missed(std::size_t kind) const {
     const Tally& tally = tallies_[kind];
     return kinds_[kind]->most_strikes > 0 && tally.runs > 0 && tally.struck == 0;
@@ -218,8 +219,8 @@ class Soak {
     fmt::print("{} runs in {:.1f} min, {} failed\n", done_, Elapsed_s() / 60, failed_);
   }
 
-  /// Prints an error if no run was made, and for each kind of fault that hit no run. @return the
-  /// number of errors
+  /// Prints an error if no run was made, and one error for each kind of fault that hit no run.
+  /// @return the number of errors
   int Complains() const {
     if (done_ == 0) fmt::print(stderr, "soak: error: no run was made: --minutes is too short\n");
     int complaints = done_ == 0 ? 1 : 0;
@@ -255,9 +256,9 @@ std::string TextOfKinds() {
 int Main(int argc, char** argv) {
   Options options;
   CLI::App app{
-      "Runs Fogline's processes under random faults, one run after another, and compares every\n"
-      "digest with that of a run without faults. Each run has machines (network namespaces)\n"
-      "of its own. Needs root and nftables.",
+      "Makes runs of Fogline's processes under random faults, and compares every digest with that\n"
+      "of a run without faults. Each run has machines (network namespaces) of its own. Needs root\n"
+      "and nftables.",
       "soak"};
   app.add_option("--minutes", options.minutes, "Time in which runs are started, in minutes")
       ->check(cli::NumberIn(kLeastMinutes, kMostMinutes))

@@ -26,8 +26,8 @@ constexpr const char* kExplanation =
     R"(Each finding is a line: its level, the finding, -> and a remedy. The level is ok, warning (runs
 work, but slower or with less convenience) or problem (runs will fail). The doctor changes nothing
 on the machine and ends no process. It takes about two seconds. Some findings have recipes below
-them. A recipe has shell commands for root, and keeps the remedy after a restart of the machine.
-Choose one that fits the machine.
+them. A recipe has shell commands for root. Choose one that fits the machine. Its effect remains
+after a restart of the machine, unless its title says otherwise.
 
 With --with, two machines examine whether they hear each other: call it on both, each with the name
 of the other. Each says which direction fails.
@@ -112,7 +112,8 @@ void PrintAsJson(const std::string& url, const doctor::Findings& findings) {
 
 void PrintAsText(const doctor::Findings& findings) {
   for (const doctor::Finding& finding : findings) {
-    // Texts contain names of processes, which any user can choose. So they are escaped.
+    // Any user can choose the names of processes, and the texts contain these names. So the texts
+    // are escaped.
     fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), EscapeControls(finding.what),
                finding.remedy.empty() ? "" : "  -> ", EscapeControls(finding.remedy));
     for (const doctor::Recipe& recipe : finding.recipes) {
