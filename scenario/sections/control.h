@@ -56,7 +56,7 @@ struct AccSection {
                 "here the larger limit");
   FOGLINE_FIELD(double, max_speed_mps, 40.0, {1, 70, "m/s"},
                 "Set speed of the ACC: the largest speed that it plans, also on a free road. A "
-                "faster car brakes at least as hard as in a fallback.",
+                "faster car reaches this speed at least as early as in a fallback.",
                 "public implementations of Takahama & Akasaka 2018: 15 to 40 m/s");
   FOGLINE_FIELD(double, min_gap_m, 2.0, {0, 50, "m"},
                 "Soft lower limit of the planned gap. A smaller gap costs min_gap_weight.",
