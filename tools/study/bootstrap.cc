@@ -10,7 +10,7 @@ namespace fogline::study {
 void Resampling::Draw(std::int64_t replicate, std::vector<double>& weights) const {
   weights.assign(runs_, 0.0);
   // The draws have a fixed seed, so each call gives the same draws, like a table of random numbers.
-  // Only the results of the runs are random.
+  // An interval changes only if the results of the runs change.
   const Random random(0, stream_);
   const auto runs = static_cast<double>(runs_);
   const auto take = [&](double u) {

@@ -32,12 +32,13 @@ class Resampling {
   Stream stream_;
 };
 
-/// Weighted mean of the values that are not NaN; NaN if these values have no weight.
+/// Weighted mean of the values that are not NaN; NaN if the sum of their weights is 0.
 double WeightedMean(std::span<const double> values, std::span<const double> weights);
 
-/// Estimate with the value `value` over n runs, and the interval from the 2.5th to the 97.5th
-/// percentile of its replicates (Efron & Tibshirani 1993, 13.3). There is no interval if there are
-/// fewer than two runs or no replicates, or if the value or a replicate is NaN.
+/// An estimate over n runs with the mean `value`. `replicates` has the value of each resample. The
+/// interval is from the 2.5th to the 97.5th percentile of the replicates (Efron & Tibshirani 1993,
+/// 13.3). There is no interval if there are fewer than two runs or no replicates, or if the value
+/// or a replicate is NaN.
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates);
 
 }  // namespace fogline::study

@@ -51,21 +51,22 @@ PlannedClaim PairClaim(std::string says, CellName a, CellName b, std::string_vie
 PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measure, Sign sign,
                         double level);
 
-/// Makes the claim from the numbers of the runs, paired seed by seed. For the measure "collided"
-/// the p-value of a claim on two cells comes from McNemar's exact test (1947). A claim on another
-/// measure of two cells cannot hold if a run of a pair ends early (Comparison::PairsCutShort()),
-/// because sums and means over time then lack the steps after the end.
+/// Computes a claim from the runs, paired seed by seed. For the measure "collided" in two cells,
+/// the p-value comes from McNemar's exact test (1947). For any other measure in two cells, the
+/// claim has a hindrance (Claim::hindrance) if a run of a pair ends early
+/// (Comparison::PairsCutShort()): then sums and means over time lack the steps after the end.
 /// @throws std::out_of_range if there is no such case, variant or measure
 Claim ClaimOf(const Comparison& comparison, const PlannedClaim& planned);
 std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const PlannedClaim> planned);
 
-/// p-value of the claim, not adjusted; 1 if the claim has a hindrance.
+/// p-value of the claim, not adjusted; 1 if the claim has a hindrance (Claim::hindrance).
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has the claimed sign,
-/// and if the claim's p-value, adjusted by Holm, is below 5 %. If Claim::p_holm is set, it is this
-/// adjusted p-value. A claim with a hindrance does not hold. A claim that does not hold fails. But
-/// if `few_runs` is true (fewer seeds than the study's default), it stays open.
+/// and if the claim's p-value, adjusted by Holm's method, is below 5 %. If Claim::p_holm is set, it
+/// is this adjusted p-value. A claim with a hindrance (Claim::hindrance) does not hold. A claim
+/// that does not hold fails, or stays open if `few_runs` is true (fewer seeds than the study's
+/// default).
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "study policy: 2 of 9 claims fail:", then a line for each failed claim; "" if no claim fails.

@@ -51,14 +51,15 @@ void RequireNamesWithoutCommas(const std::vector<Named>& all) {
   }
 }
 
-/// Whether the variant has no traded control. Each case has a run without traded control, even if
-/// every variant of the study has traded control.
+/// Whether kWithoutTradedControl is the only override of the variant. Such a variant needs no runs
+/// of its own, because each case already has the run without traded control.
 bool IsWithoutTradedControl(const StudyVariant& variant) {
   return variant.overrides.size() == 1 && variant.overrides.front() == kWithoutTradedControl;
 }
 
 /// The scenarios of the cells, case by case. The first scenario of a case belongs to its run
-/// without traded control. A variant without traded control has no scenario of its own.
+/// without traded control. A variant for which IsWithoutTradedControl() is true has no scenario of
+/// its own.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
   std::vector<Scenario> scenarios;

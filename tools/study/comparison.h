@@ -76,7 +76,7 @@ class Comparison {
   /// because commas separate the cells of a CSV file
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
-  /// Uses finished runs.
+  /// Takes the values of finished runs.
   /// @param values of all measures in all runs, ordered by case, then by variant, measure and seed
   /// @throws std::invalid_argument if the number of values is wrong
   Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> variants, std::int64_t seeds,
@@ -114,13 +114,13 @@ class Comparison {
 
   /// Number of differences from variant `reference` that have a p-value.
   std::int64_t Comparisons(std::size_t reference) const;
-  /// A summary of every measure of every cell, and the measure's difference from variant
-  /// `reference`. A difference has an interval, an effect size (mean divided by standard deviation
-  /// of the paired differences, Cohen's d_z), and a p-value. The p-value is also adjusted by Holm
-  /// for all differences of the file. The p-value of `collided` comes from McNemar's test, and all
-  /// other p-values come from the t test. If pairs of runs end early (PairsCutShort()), the file
-  /// has the number of these pairs. Then the differences of all measures other than `collided` have
-  /// no p-value.
+  /// A CSV file with a row for each measure in each cell. A row has a summary of the measure, and
+  /// its difference from the same measure of variant `reference` in the same case. A difference has
+  /// an interval, an effect size (mean divided by standard deviation of the paired differences,
+  /// Cohen's d_z), and a p-value. The p-value is also adjusted by Holm for all differences of the
+  /// file. The p-value of `collided` comes from McNemar's test, and all other p-values come from
+  /// the t test. If pairs of runs end early (PairsCutShort()), the file has the number of these
+  /// pairs. Then the differences of all measures other than `collided` have no p-value.
   std::string Csv(std::size_t reference) const;
   /// A figure of a measure: points with intervals. If `cases_on_axis` is true, the cases are on the
   /// x axis and each variant is a series. Otherwise the variants are on the x axis and each case is
@@ -139,14 +139,15 @@ class Comparison {
                                     std::span<const std::string_view> measures) const;
 
  private:
-  /// A difference from the reference, and the result of its test.
+  /// The difference of a variant from variant `reference` in one measure, and the result of the
+  /// test of this difference.
   struct PairedTest {
     Estimate difference;
     std::int64_t cut_short = 0;  // number of pairs (PairsCutShort())
     std::optional<double> p;
   };
-  /// The tests against variant `reference`, by case, variant and measure. The tests of the
-  /// reference itself are empty.
+  /// The tests of all variants against variant `reference`, by case, variant and measure. The tests
+  /// of variant `reference` itself are empty.
   std::vector<PairedTest> TestsAgainst(std::size_t reference) const;
 
   std::vector<StudyCase> cases_;

@@ -39,8 +39,8 @@ std::vector<StudyCase> HumanKinds() {
           {std::string(kWholeName), "dense_fog.json", kWholeHuman}};
 }
 
-/// Two cases for each density of the fog: one with the paper's driver, and one with a complete
-/// human model. In the study these cases follow the cases of HumanKinds().
+/// Two cases for each density of the fog: one with the paper's driver, and one with a driver who
+/// has all weaknesses. In the study these cases follow the cases of HumanKinds().
 std::vector<StudyCase> Densities() {
   std::vector<StudyCase> cases;
   for (const double visibility_m : kDensities_m) {
@@ -129,7 +129,7 @@ std::vector<PlannedClaim> DriverClaims() {
   return claims;
 }
 
-/// Repeats, with realistic noise, the claims that support the answer.
+/// The claims on runs with realistic noise. They support the study's answer.
 std::vector<PlannedClaim> NoisyDriverClaims() {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);
@@ -190,11 +190,10 @@ StudyResult RunDriverStudy(const StudyContext& context) {
       comparison.TableOf("Drivers in dense fog with traded control", "driver", rows, kDriverTable),
       comparison.TableOfVariant(0, kDriverTable), comparison.TableOfVariant(1, kDriverTable)};
   section.method = fmt::format(
-      "{} seeds of dense_fog.json, and of paper.json, with other human drivers of the host, "
-      "without "
-      "and with traded control; sight, errors and awareness with their defaults. Without traded "
-      "control the driver "
-      "has no effect, so at equal visibility this run is the same for all drivers. {}",
+      "{} seeds of dense_fog.json, and of paper.json, with several human drivers of the host, "
+      "without and with traded control; sight, errors and awareness have their default parameters. "
+      "Without traded control the driver has no effect, so at equal visibility the run without "
+      "traded control is the same for all drivers. {}",
       comparison.seeds(), RealisticNoiseText());
   result.files = {{"driver.csv", comparison.Csv(0)}};
   return result;

@@ -67,7 +67,7 @@ double PValueOfEqual(const Estimate& estimate, double margin);
 /// Mean and interval as text, such as "12.3 [12.0, 12.6]"; "–" without a mean. If some values are
 /// infinite: "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
-/// Text() with 2 to 6 decimals, so that the width of the interval has two digits.
+/// Text() with 2 to 6 decimals: as many as give the width of the interval two significant digits.
 std::string Text(const Estimate& estimate);
 /// The share as text, such as "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
 std::string Text(const metrics::EventShare& share);

@@ -1,5 +1,5 @@
-// Makes runs that are compared with each other. The runs have the same seed and so the same noise,
-// and all runs share one run without traded control.
+// Makes runs that are compared with each other. The runs have the same seed and so the same noise.
+// All of them are paired with one run without traded control.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,12 @@ using RunValues = std::vector<double>;
 /// between calls, because allocating them again would take time.
 class PairedWorker {
  public:
-  /// Runs all `scenarios` with this seed. The first scenario has no traded control. The other runs
-  /// are paired with its run. The result does not contain the first run.
+  /// Runs all `scenarios` with this seed. The first scenario has no traded control, and the other
+  /// runs are paired with its run. @return the values of the other runs
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
-  /// The measures of the run without traded control that the latest Compute() has made, paired with
-  /// itself. A second run of this scenario would have the same measures, so it is not made.
+  /// The values of the run without traded control from the latest Compute(). This run is paired
+  /// with itself. A second run without traded control would give the same values, so it is not
+  /// made.
   /// @param scenario the first scenario of the latest Compute()
   RunValues OfBaseline(const Scenario& scenario) const;
 

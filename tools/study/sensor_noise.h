@@ -14,7 +14,7 @@ inline constexpr double kRealisticNoise_m = 0.25;
 /// Text that is added to the names of cases with realistic noise.
 inline constexpr std::string_view kWithRealisticNoise = " with realistic noise";
 
-/// Overrides for a radar with this noise, and for a filter that knows this noise.
+/// Overrides for a radar with realistic noise, and for a filter that knows this noise.
 const std::vector<std::string>& RealisticNoise();
 /// The case with the overrides of RealisticNoise() added.
 StudyCase WithRealisticNoise(StudyCase one);

@@ -34,11 +34,12 @@ struct StudyContext {
   /// Called repeatedly with the finished and the total number of units; returns false to stop.
   std::function<bool(std::int64_t done, std::int64_t total)> progress;
 
-  /// A scenario of the folder with `overrides` and then `more` applied. @throws InputError
+  /// Loads a scenario of the folder. `overrides` are applied first, and then `more`.
+  /// @throws InputError
   Scenario Load(std::string_view file, std::vector<std::string> overrides,
                 const std::vector<std::string>& more = {}) const;
-  /// The context of one part of the study. The part begins when `before` of the study's `all` units
-  /// are done.
+  /// The context for one part of a study. The study has `all` units, and `before` of them are done
+  /// when the part begins.
   StudyContext Part(std::int64_t before, std::int64_t all) const;
   /// Calls `progress`. @throws StudyStopped if it returns false
   void Show(std::int64_t done, std::int64_t total) const;
@@ -66,7 +67,7 @@ struct Study {
   std::string_view question;
   sweep::SeedRange seeds;  // default of --seeds
   StudyResult (*run)(const StudyContext& context);
-  bool needs_sets = false;  // whether it reads the parameter sets of scenario/ensemble
+  bool needs_sets = false;  // whether the study reads the parameter sets of scenario/ensemble
 };
 
 /// The table of all studies, in the order of `fogline study all`. The command line, its help and

@@ -1,4 +1,4 @@
-// fogline study, a program of its own. It answers the paper's open questions with numbers.
+// The program of the verb `fogline study`. It answers the paper's open questions with numbers.
 #include "tools/study/study.h"
 
 #include <algorithm>

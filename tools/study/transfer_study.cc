@@ -15,8 +15,8 @@ namespace {
 /// Limit of ISO 15622 for the jerk averaged over 1 s at speeds above 20 m/s. It also serves as the
 /// limit of comfort. The unit is m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
-/// The measure that kComfortableJerk_mps3 limits. It is not the jerk of single steps, because that
-/// jerk grows as the step shrinks.
+/// The measure that kComfortableJerk_mps3 limits. It is not the jerk of single time steps, because
+/// a shorter time step gives the same jump a larger jerk.
 constexpr std::string_view kTransferJerk = "max_handover_jerk_1s_mps3";
 /// A loss of safety that is too small to matter, in points of SI.
 constexpr double kTolerableLoss = 3;
@@ -52,10 +52,9 @@ constexpr std::array<std::string_view, 10> kTransferTable{kTransferJerk,
 
 constexpr std::string_view kTransferAnswer =
     "Hardly. Averaged over a second, as the standard for adaptive cruise control demands, the jerk "
-    "of "
-    "a plain step is comfortable in both scenarios. A ramp costs safety in the paper's scenario; "
-    "in "
-    "dense fog a gate avoids jerk, and costs no safety.";
+    "of an immediate transfer (profile step) is comfortable in both scenarios. A ramp costs safety "
+    "in the paper's scenario; in dense fog a gate, which limits acceleration and jerk of the "
+    "command after a transfer, avoids jerk and costs no safety.";
 constexpr std::string_view kTransferWouldChange =
     "A driver who needs time to take over (study takeover), a car whose engine smooths each "
     "command "
@@ -124,14 +123,13 @@ StudyResult RunTransferStudy(const StudyContext& context) {
                           "Jump of the command at hand-overs"),
       comparison.FigureOf("rms_jerk_mps3", "transfer-rms", "Comfort of the whole run")};
   section.method = fmt::format(
-      "{} seeds of each scenario at threshold 0.5, profiles and gate with their defaults. The jerk "
-      "of a hand-over is the largest one of the host's applied acceleration while the authorities "
-      "change and for measures.handover_s after that (3 s by default). It is averaged over 1 s, as "
-      "in "
-      "ISO 15622, whose limit is {:g} m/s3 above 20 m/s. The jerk of single steps is beside it "
-      "(max_handover_jerk_mps3): for a jump it is the jump divided by the step, so it depends on "
-      "the "
-      "length of a step. Differences are paired by seed. {}",
+      "{} seeds of each scenario at threshold 0.5; profiles and gate have their default "
+      "parameters. The jerk of a hand-over is the largest jerk of the host from the first step of "
+      "a change of the authorities until measures.handover_s (3 s by default) after its last step. "
+      "It is averaged over 1 s, as in ISO 15622, whose limit is {:g} m/s3 at speeds above 20 m/s. "
+      "max_handover_jerk_mps3 is the jerk of single steps. For a jump of the acceleration, it is "
+      "the jump divided by the length of the step, so it depends on this length. Differences are "
+      "paired by seed. {}",
       comparison.seeds(), kComfortableJerk_mps3, RealisticNoiseText());
   result.files = {{"transfer.csv", comparison.Csv(0)}};
   return result;

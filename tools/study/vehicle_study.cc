@@ -87,7 +87,8 @@ std::vector<StudyCase> VehicleCases() {
   return cases;
 }
 
-/// Sedan and truck in every Ground, with realistic noise.
+/// The cases "sedan" and "truck" of each of Grounds(), with realistic noise. The cases with a slope
+/// or ice, or with cars of two kinds, are left out.
 std::vector<StudyCase> NoisyCars() {
   std::vector<StudyCase> noisy = VehicleCases();
   std::erase_if(noisy, [](const StudyCase& one) {
@@ -107,10 +108,11 @@ constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
                                                         "rms_jerk_mps3"};
 
 constexpr std::string_view kVehicleAnswer =
-    "Yes, but less than for a point mass, and least for a truck. Behind a leader that brakes hard "
-    "in the fog, handing over does harm with every car, but with half of the parameter sets of "
-    "study ensemble it helps point masses and cars. Behind such a leader, with the parameters of "
-    "this study, a jerk limit on the transfer lets trucks collide.";
+    "Yes, but in dense fog the safety improvement is smaller than for a point mass, and smallest "
+    "for a truck. Behind a leader that brakes hard in the fog on a dry road, handing over does "
+    "harm with point masses, passenger cars (compact, sedan) and trucks; but with half of the "
+    "parameter sets of study ensemble it helps with point masses and passenger cars. Behind such a "
+    "leader, with the parameters of this study, a jerk limit on the transfer lets trucks collide.";
 constexpr std::string_view kVehicleWouldChange =
     "An ACC and a driver that are tuned to the car, or automatic emergency braking.";
 
@@ -186,14 +188,15 @@ std::string VehicleMethod(const Comparison& comparison) {
   const double wet = models::FrictionOf(Surface::kWet) * kGravity_mps2;
   return fmt::format(
       "{} seeds of paper.json, of dense_fog.json, and of dense_fog.json with a leader that brakes "
-      "with 6 m/s2 (on ice with 1.4, because it holds no more) from 20 to 7 m/s in the middle of "
-      "the fog. Host and follower are cars of the kind that the case names, without traded "
-      "control, with the paper's step, and with a jerk-limited transfer. ACC and driver are tuned "
-      "for the point mass. Each case reaches another limit of the car: delay "
-      "and lag in every car, the little power that a truck has left on a slope, the tyres on ice "
-      "under hard braking. The compact has the delays and lags of the sedan, so it appears only "
-      "under hard braking. No case has a wet road: it holds {:.1f} m/s2, and the hardest "
-      "acceleration or braking of a host in any of these runs is {:.1f} m/s2{}. {}",
+      "with 6 m/s2 (on ice with 1.4 m/s2, because friction allows hardly more) from 20 to 7 m/s in "
+      "the middle of the fog. Host and follower are cars of the kind that the case names. There "
+      "are three variants: no traded control, traded control with the paper's step, and traded "
+      "control with a jerk-limited transfer. ACC and driver are tuned for the point mass. Each "
+      "case reaches another limit of the car: delay and lag in every car, the little power that a "
+      "truck has left on a slope, the tyres on ice under hard braking. The compact has the delays "
+      "and lags of the sedan, so it appears only under hard braking. No case has a wet road: "
+      "friction on a wet road allows {:.1f} m/s2, and the hardest acceleration or braking of a "
+      "host in any of these runs is {:.1f} m/s2{}. {}",
       comparison.seeds(), wet, hardest,
       hardest < wet ? ", so a wet road would give the results of the dry road" : "",
       RealisticNoiseText());

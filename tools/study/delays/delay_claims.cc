@@ -22,8 +22,8 @@ constexpr std::array kStatements{
                    kDocParts[0].detector, Sign::kLess},
     DelayStatement{"the sign explains another part of the lead.", kDocParts[2].detector,
                    kDocParts[1].detector, Sign::kLess},
-    // The sigmoid increases with the distance. So each threshold of the sigmoid has the same alarms
-    // as one threshold of the distance.
+    // The sigmoid rises with the distance to which it is applied. So each threshold of the sigmoid
+    // gives the same alarms as one threshold of this distance.
     DelayStatement{"the sigmoid changes no alarm, by definition.", kDocParts[3].detector,
                    kDocParts[2].detector, Sign::kEqual, kStep_s, true},
     DelayStatement{"a sum over all steps is faster.", "cusum", "doc", Sign::kLess}};

@@ -64,9 +64,9 @@ double ThresholdFinder::Threshold(double arl_zero_s) const {
   return Threshold(std::vector<double>(durations_s_.size(), 1.0), arl_zero_s);
 }
 
-// Starts with a threshold above all scores, and lowers it score by score. At each lower threshold
-// some runs end sooner, so the mean time to an alarm falls. The result is just above the first
-// score at which this mean time is too short.
+// The search starts with a threshold above all scores, and lowers it score by score. At each lower
+// threshold some runs end sooner, so the mean time to an alarm falls. The result is just above the
+// first score at which this mean time is too short.
 double ThresholdFinder::Threshold(std::span<const double> weights, double arl_zero_s) const {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   double alarms = 0;

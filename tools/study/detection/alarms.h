@@ -1,5 +1,6 @@
-// Computes the alarms of detectors from their scores. Also finds thresholds that give all detectors
-// the same rate of false alarms, and the share of steps in fog that a threshold detects.
+// Computes results of detectors from their scores: alarms, thresholds that give all detectors the
+// same rate of false alarms, the area under the ROC curve, and the share of steps in fog that a
+// threshold detects.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +42,7 @@ struct AlarmCount {
   /// estimate assumes that the times have an exponential distribution. The time of a run without an
   /// alarm is its whole length (a censored time). The mean time is infinite if no run has an alarm.
   double ArlZero_s() const;
-  /// Exact 95 % bounds of this mean time (chi-square; Garwood 1936).
+  /// Exact 95 % bounds of the mean time to a false alarm (chi-square; Garwood 1936).
   std::pair<double, double> ArlZeroBounds_s() const;
   /// Whether a mean time is within ArlZeroBounds_s().
   bool MayHave(double arl_zero_s) const;
@@ -74,8 +75,9 @@ class ThresholdFinder {
 /// half. This is the area under the ROC curve (Mann & Whitney 1947). @param clear sorted
 double AreaUnderRoc(std::span<const double> fog, std::span<const double> clear);
 
-/// Share of the scores in fog that are above a threshold. The threshold is the lowest one that at
-/// most a share `false_positives` of the scores in clear air exceed. @param clear sorted
+/// Share of the scores in fog that are above a threshold. The threshold is as low as possible, but
+/// at most the share `false_positives` of the scores in clear air may be above it. @param clear
+/// sorted
 double TruePositives(std::span<const double> fog, std::span<const double> clear,
                      double false_positives);
 

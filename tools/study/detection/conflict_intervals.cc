@@ -17,8 +17,9 @@ namespace {
 constexpr Stream kClearAir{1002};
 constexpr Stream kFog{1003};
 
-/// Results of one detector at one threshold: for each visibility the mean delay and the share of
-/// the fogs that are detected, and the mean delay over the ranked visibilities.
+/// Results of one detector at one threshold. For each visibility: the mean delay, and the share of
+/// the fogs that the detector finds. `mean_delay_s` is the mean of the delays over the visibilities
+/// of DetectionRule::ranked.
 struct Detection {
   std::vector<double> delay_s;
   std::vector<double> share;

@@ -52,10 +52,10 @@ Estimate DelayDifference(const DetectionComparison& a, const DetectionComparison
 /// come from a bootstrap over the runs in clear air and the runs in fog. Each replicate resamples
 /// the runs in clear air, and finds a threshold from the resampled runs. It also resamples the
 /// seeds in fog, with the same draws for all visibilities and detectors. Detectors with equally
-/// many runs in clear air have the same draws of these runs, too. For the probability of detection,
-/// each end of the interval is the wider one of two ends: that of the bootstrap, and that of the
-/// exact interval of Clopper and Pearson. So the interval is not too narrow if all or nearly all
-/// replicates have the same detection.
+/// many runs in clear air have the same draws of these runs, too. The interval of the probability
+/// of detection is the smallest one that contains both the interval of the bootstrap and the exact
+/// interval of Clopper and Pearson. So it is not too narrow if all or nearly all replicates have
+/// the same detection.
 std::vector<DetectionComparison> CompareDetection(std::span<const DetectorRuns> detectors,
                                                   const DetectionRule& rule);
 

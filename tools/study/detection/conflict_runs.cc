@@ -16,17 +16,17 @@ using ClearRuns = std::vector<std::vector<ClearRun>>;
 /// All runs of a ConflictSet.
 struct SetRuns {
   ClearRuns calibration;  // runs from which thresholds are found
-  ClearRuns validation;   // further runs, in which false alarms are counted again
-  ClearRuns long_air;     // used instead of `calibration` if a condition of the set ranks detectors
+  ClearRuns validation;   // other runs, in which false alarms are counted again
+  ClearRuns further_air;  // used instead of `calibration` if ConflictSet::Ranks() is true
   std::vector<std::vector<std::vector<ScoreRecords>>> fog;  // by detector, visibility, seed
 
   /// The runs from which the threshold of a detector is found.
   std::span<const ClearRun> OfThreshold(std::size_t detector) const {
-    return long_air[detector].empty() ? calibration[detector] : long_air[detector];
+    return further_air[detector].empty() ? calibration[detector] : further_air[detector];
   }
 };
 
-SetRuns RunShortClearAir(const StudyContext& context, const Traffic& clear_air,
+SetRuns RunFirstClearAir(const StudyContext& context, const Traffic& clear_air,
                          const ShowUnit& show) {
   ClearAirPlan plan{.detectors = AllDetectors(),
                     .first_seed = kCalibrationSeeds + context.seeds.first};
@@ -35,19 +35,19 @@ SetRuns RunShortClearAir(const StudyContext& context, const Traffic& clear_air,
   plan.first_seed = kValidationSeeds + context.seeds.first;
   plan.keeps_scores = true;
   runs.validation = RunClearAir(context, clear_air, plan, show);
-  runs.long_air.resize(Detectors().size());
+  runs.further_air.resize(Detectors().size());
   runs.fog.resize(Detectors().size());
   return runs;
 }
 
-/// Makes the long runs in clear air for some detectors. @param plan without its first seed, which
+/// Makes further runs in clear air for some detectors. @param plan without its first seed, which
 /// this function sets
-void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, ClearAirPlan plan,
-                     const ShowUnit& show, SetRuns& runs) {
-  plan.first_seed = kLongClearAirSeeds + plan.runs_per_seed * context.seeds.first;
+void RunFurtherClearAir(const StudyContext& context, const Traffic& clear_air, ClearAirPlan plan,
+                        const ShowUnit& show, SetRuns& runs) {
+  plan.first_seed = kFurtherClearAirSeeds + plan.runs_per_seed * context.seeds.first;
   ClearRuns of_plan = RunClearAir(context, clear_air, plan, show);
   for (std::size_t i = 0; i < of_plan.size(); ++i) {
-    runs.long_air[plan.detectors[i]] = std::move(of_plan[i]);
+    runs.further_air[plan.detectors[i]] = std::move(of_plan[i]);
   }
 }
 
@@ -69,7 +69,7 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
 void RunFogs(const StudyContext& context, const ConflictSituation& situation, const ShowUnit& show,
              SetRuns& runs, ConflictSet& set) {
   const std::vector<SortedBatches> clear_scores = SortScores(runs.validation);
-  // Means of the AUC over the visibilities, by detector and batch.
+  // Means of the AUC over the visibilities, by detector and batch of runs (kBatches).
   std::vector<std::vector<double>> auc(clear_scores.size(),
                                        std::vector<double>(clear_scores.front().size(), 0.0));
   for (const double visibility_m : kVisibilities_m) {
@@ -139,8 +139,8 @@ std::vector<std::size_t> CountsAs(const ConflictSet& set, std::span<const AlarmT
   return counts_as;
 }
 
-/// The detectors that have a threshold. Of the detectors with the same alarms, the result has only
-/// one.
+/// The detectors that have a threshold. Of several detectors with the same alarms, the result has
+/// only one.
 std::vector<std::size_t> DistinctOf(const ConflictSet& set) {
   std::vector<std::size_t> distinct;
   for (std::size_t d = 0; d < set.thresholds.size(); ++d) {
@@ -163,7 +163,8 @@ void AddDetected(std::span<const ScoreRecords> records, double threshold,
   detector.delay_if_detected_s /= static_cast<double>(detector.detected);
 }
 
-/// Sets for each condition whether it ranks detectors (Telling), at the current thresholds.
+/// Sets for each condition whether its results can rank the detectors (Telling). Uses the
+/// thresholds that `set` has now.
 void SetTelling(const StudyContext& context, const SetRuns& runs, ConflictSet& set) {
   const Scenario paper = context.Load("paper.json", {});
   const double window_s = static_cast<double>(paper.arbitrator.window_steps) * paper.step_s;
@@ -217,7 +218,7 @@ ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Conf
       .fog = std::string(fog), .noise = std::string(noise.name), .seeds = context.seeds.count()};
   const ConflictSituation situation{fog, noise};
   const Traffic clear_air = TrafficOf(ScenarioInClearAir(context, situation));
-  SetRuns runs = RunShortClearAir(context, clear_air, show);
+  SetRuns runs = RunFirstClearAir(context, clear_air, show);
   set.runs = 2 * set.seeds;
   RunFogs(context, situation, show, runs, set);
   SetThresholds(runs, set);
@@ -225,12 +226,12 @@ ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Conf
   set.counts_as = CountsAs(set, alarms);
   SetTelling(context, runs, set);
   if (set.Ranks()) {
-    RunLongClearAir(context, clear_air, {QuickDetectors(), 0, kQuickClearAir}, show, runs);
-    RunLongClearAir(context, clear_air, {SlowDetectors(), 0, kSlowClearAir}, show, runs);
+    RunFurtherClearAir(context, clear_air, {QuickDetectors(), 0, kQuickClearAir}, show, runs);
+    RunFurtherClearAir(context, clear_air, {SlowDetectors(), 0, kSlowClearAir}, show, runs);
     set.runs += (kQuickClearAir + kSlowClearAir) * set.seeds;
     SetThresholds(runs, set);
     for (std::size_t d = 0; d < alarms.size(); ++d) {
-      AddAlarms(runs.long_air[d], set.thresholds[d].threshold, alarms[d].further);
+      AddAlarms(runs.further_air[d], set.thresholds[d].threshold, alarms[d].further);
     }
     set.counts_as = CountsAs(set, alarms);
   } else {
@@ -251,8 +252,8 @@ Estimate ConflictSet::Difference(std::size_t a, std::size_t b) const {
 }
 
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
-  // Units of progress for each seed: two runs in clear air, one run in each fog, and the long runs
-  // in clear air for quick and for slow detectors.
+  // Units of progress for each seed: two runs in clear air, one run in the fog of each visibility,
+  // one unit for all further runs of the quick detectors, and one for those of the slow detectors.
   constexpr std::size_t kUnits = 2 + kVisibilities_m.size() + 2;
   const std::int64_t all =
       context.seeds.count() *
@@ -279,7 +280,7 @@ std::vector<DelayOutcome> RunDelays(const StudyContext& context,
   const ClearRuns clear =
       RunClearAir(context, air,
                   {.detectors = {detectors.begin(), detectors.end()},
-                   .first_seed = kLongClearAirSeeds + kDelayClearAir * context.seeds.first,
+                   .first_seed = kFurtherClearAirSeeds + kDelayClearAir * context.seeds.first,
                    .runs_per_seed = kDelayClearAir},
                   show);
   DetectionRule rule{

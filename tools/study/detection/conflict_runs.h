@@ -24,12 +24,13 @@ namespace fogline::study {
 inline constexpr std::array kVisibilities_m{300.0, 150.0, 100.0, 75.0, 50.0};
 /// Mean time to a false alarm for which thresholds are calibrated, s: six false alarms an hour.
 inline constexpr double kArlZero_s = 600;
-/// If the mean time to a false alarm at a threshold is at most this multiple of kArlZero_s, the two
-/// times count as equal.
+/// If the mean time to a false alarm at a threshold is at most this multiple of kArlZero_s, the
+/// threshold counts as calibrated.
 inline constexpr double kLoosest = 1.5;
 /// Number of runs in clear air for each seed, for the thresholds of quick detectors and of slow
-/// detectors (detector_bank.h). These numbers apply if at least one condition of the set ranks
-/// detectors (telling.h). Otherwise there is one run for each seed.
+/// detectors (detector_bank.h). If no condition of a ConflictSet ranks detectors, there is only one
+/// run for each seed. A condition ranks detectors if their delays put them into an order
+/// (telling.h).
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
 /// First seeds of the runs in clear air. They are far from the seeds in fog, and from each other.
@@ -37,7 +38,7 @@ inline constexpr std::int64_t kSlowClearAir = 5;
 /// again.
 inline constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 inline constexpr std::int64_t kValidationSeeds = 2'000'000'000;
-inline constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
+inline constexpr std::int64_t kFurtherClearAirSeeds = 3'000'000'000;
 
 struct ConflictCondition {
   std::string fog;  // bias or beam
@@ -88,16 +89,18 @@ struct ConflictSet {
   std::int64_t seeds = 0;
   std::int64_t runs = 0;
   std::vector<DetectorThreshold> thresholds;
-  /// For each detector, the index of the detector that it counts as. All detectors with the same
-  /// alarms count as one of these detectors, and have its results.
+  /// Detectors with the same alarms count as one detector: one of them stands for all, and they all
+  /// have its results. For each detector, this list has the index of the detector that stands for
+  /// it. Any other detector stands for itself.
   std::vector<std::size_t> counts_as;
   /// Detection by the detectors that have a threshold. The mean delays are means over the
-  /// conditions that rank detectors.
+  /// conditions whose delays put the detectors into an order (telling.h).
   std::vector<DetectionComparison> compared;
   std::vector<Estimate> auc;              // mean over the visibilities
   std::vector<ConflictOutcome> outcomes;  // in the order of kVisibilities_m
 
-  /// Whether any condition of the set ranks detectors.
+  /// Whether the delays in at least one condition of the set put the detectors into an order
+  /// (telling.h).
   bool Ranks() const;
   /// Whether the detector has a threshold at which it can be compared.
   bool IsCompared(std::size_t detector) const { return thresholds[detector].is_determined(); }

@@ -15,7 +15,7 @@ namespace fogline::study {
 inline constexpr double kReferenceVisibility_m = 60;
 /// Length of the fog in paper.json, s.
 inline constexpr double kFog_s = 11;
-/// The noise in figures, in most claims and for the ROC.
+/// Name of the noise that the figures, most claims and the ROC use.
 inline constexpr std::string_view kUsualNoise = "near-range";
 
 /// Standard deviations of the measured ranges, m. The filter assumes these values, but at least

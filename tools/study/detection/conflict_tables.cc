@@ -77,9 +77,9 @@ std::vector<std::size_t> Ranked(const ConflictSet& set) {
 report::StudyTable TableOfParts(std::span<const ConflictSet> sets) {
   report::StudyTable table{
       .caption =
-          "Where the lead of the Degree of Conflict comes from: delay from fog to alarm, and "
-          "what each of its parts changes, means over the visibilities that rank detectors "
-          "[95 % confidence intervals]",
+          "The parts of the Degree of Conflict: the delay from fog to alarm, and the change of the "
+          "delay by each part. Means over the visibilities that rank detectors [95 % confidence "
+          "intervals]",
       .columns = {"detector"}};
   for (const DocPart& part : kDocParts) table.rows.push_back({std::string(part.name)});
   for (const ConflictSet& set : sets) {

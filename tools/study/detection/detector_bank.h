@@ -1,5 +1,6 @@
-// The detectors of study `conflict`: every measure of conflict, and every measure of a single step
-// combined with the window and the sign of the Degree of Conflict.
+// The detectors of study `conflict`. Every measure of conflict is a detector. If the score of a
+// measure depends only on the present step, its combinations with the window and the sign of the
+// Degree of Conflict are detectors, too.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@
 namespace fogline::study {
 
 /// Parameters of the measures in a scenario. The width of bins and the shift of the SPRT depend on
-/// the noise of the scenario's sensors. Fixed parameters would be tuned to only one of several
+/// the noise of the scenario's sensors, because fixed values would suit only one of the study's
 /// noises. The width of bins is the larger standard deviation of the two sensors, but at least
 /// ConflictParameters::smallest_std_m. The SPRT tests for the same shift as the CUSUM. This shift
 /// is 2 * cusum_kappa standard deviations of the difference of the sensors.
@@ -32,7 +33,8 @@ inline constexpr std::string_view kDistance = "distance";
 /// The rows of ConflictMeasures(), then `distance`.
 std::span<const conflict::ConflictMeasureRow> ComparedMeasures();
 
-/// A measure, or a measure of a single step combined with window, sign or both.
+/// A measure. If its score depends only on the present step, it may be combined with the window,
+/// the sign, or both.
 struct Detector {
   std::string name;         // such as "nis", "nis + window", "nis + sign", "nis + window + sign"
   std::size_t measure = 0;  // index in ComparedMeasures()
@@ -41,8 +43,9 @@ struct Detector {
   bool is_quick = false;    // needs little time, and no prediction of the filter (SensorBench)
 };
 
-/// A detector for each of ComparedMeasures(), in the same order. Then follow three more detectors
-/// for each measure of a single step: its combinations with window, sign or both.
+/// First a detector for each of ComparedMeasures(), in the same order. Then three more detectors
+/// for each measure whose score depends only on the present step: the measure with the window, with
+/// the sign, and with both.
 const std::vector<Detector>& Detectors();
 /// Index in Detectors(). @throws std::out_of_range
 std::size_t DetectorNamed(std::string_view name);
@@ -58,7 +61,7 @@ class DetectorBank {
   DetectorBank(const conflict::ConflictParameters& parameters,
                std::span<const std::size_t> detectors);
 
-  /// The scores of this step, in the order of the detectors. Call it once per step.
+  /// The scores of this step, in the order of the detectors. Call Step() once per step.
   std::span<const double> Step(const conflict::Evidence& evidence);
   /// Restores the state that the bank had directly after its construction.
   void Reset();

@@ -8,7 +8,8 @@
 namespace fogline::study {
 namespace {
 
-/// A condition ranks detectors only if some detector finds at least this share of the fogs.
+/// A condition (a fog model, a visibility and a noise) ranks detectors only if some detector finds
+/// at least this share of the fogs.
 constexpr double kLeastFound = 0.1;
 /// A condition does not rank detectors if this share of them raises the alarm at about the same
 /// time. The share is below 1, because some detectors may hardly detect any fog.

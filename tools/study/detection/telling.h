@@ -17,12 +17,13 @@ struct AlarmTimes {
 };
 
 /// For each detector, the index of the detector that it counts as. Detectors with the same alarms
-/// in all compared runs count as one of them, the one with the most runs. Every other detector
-/// counts as itself. The further runs of two detectors are compared only if both detectors have
-/// equally many further runs, because only then are these the same runs.
+/// count as one of them, the one with the most runs. A detector whose alarms no other detector has
+/// counts as itself. Two detectors have the same alarms if their lists `common` are equal, and if
+/// their lists `further` are equal or have different lengths. Lists `further` of different lengths
+/// are not compared, because they come from different runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
-/// Whether a condition ranks detectors; if not, the reason.
+/// Whether the results of a condition are good enough to rank the detectors; if not, the reason.
 enum class Telling {
   kRanks,
   kAllAtOnce,  // nine of ten detectors raise the alarm at about the same time as the first one

@@ -16,8 +16,10 @@
 namespace fogline::study {
 namespace {
 
-/// Every policy of policies::Policies(), and further rules: fusion that handles wrong sensors
-/// without a human, hand-back by the fusion, and a driver who must be asked to take over.
+/// The rules that the study compares. A rule is a policy, or a policy with other parameters of the
+/// arbitrator or of the fusion. The first rules are the policies of policies::Policies(). The
+/// further rules are: fusion that handles wrong sensors without a human, hand-back by the fusion,
+/// and a driver who must be asked to take over.
 std::vector<StudyVariant> EveryRule() {
   std::vector<StudyVariant> variants;
   for (const policies::PolicyRow& row : policies::Policies()) {
@@ -38,9 +40,9 @@ std::vector<StudyVariant> EveryRule() {
 
 constexpr std::string_view kCalibratedRadar = "calibrated radar";
 
-/// Each fog with each human, with the scenario's noise and with the noise of a real radar. The last
-/// cases have the paper's fog and a calibrated radar. A calibrated radar has no mounting offset,
-/// and the offset is subtracted from the centre of the DoC.
+/// Each fog with each human, once with the scenario's noise and once with the noise of a real
+/// radar. The last cases have the paper's fog and a calibrated radar: the mounting offset of the
+/// radar is 0, and the centre of the DoC is smaller by the scenario's offset.
 std::vector<StudyCase> PolicyFogs(const Scenario& paper) {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
@@ -73,7 +75,7 @@ constexpr std::array<std::string_view, 14> kPolicyTable{"si_pct",
                                                         "wrong_human_s",
                                                         "wrong_automation_s"};
 
-/// The rules of the first table (PolicyMainTable()).
+/// The rules (EveryRule()) in the first table (PolicyMainTable()).
 constexpr std::array<std::string_view, 10> kMain{"none",
                                                  "none + gate",
                                                  "none + adaptive noise",
@@ -96,8 +98,8 @@ std::vector<std::string> MainCases() {
   return names;
 }
 
-/// A figure of a measure by rule, with a series for each case. At first the page shows only the
-/// main cases.
+/// A figure of a measure. The rules (EveryRule()) are on the x axis, and each case is a series. At
+/// first the page shows only the series of MainCases().
 report::StudyFigure ByRule(const Comparison& comparison, std::string_view measure, std::string id,
                            std::string title) {
   report::StudyFigure figure = comparison.FigureOf(measure, std::move(id), std::move(title));
@@ -108,7 +110,8 @@ report::StudyFigure ByRule(const Comparison& comparison, std::string_view measur
   return figure;
 }
 
-/// The first table: mean compromised safety of the main rules in the main cases.
+/// The first table: mean compromised safety, with a row for each rule of kMain and a column for
+/// each of MainCases().
 report::StudyTable PolicyMainTable(const Comparison& comparison) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog (m), means over {} seeds [95 % "
@@ -131,15 +134,14 @@ report::StudyTable PolicyMainTable(const Comparison& comparison) {
 }
 
 constexpr std::string_view kPolicyAnswer =
-    "It depends on how the LiDAR fails. If fog biases its range a little, handing over at "
-    "once to a perfect human is safer than each automation of this study, unless the radar is "
-    "calibrated and the automation uses the right sensor; if fog makes a false echo, a filter "
-    "whose gate stays shut is safer than each rule "
-    "that hands over; and if there is no echo at all, the automation alone is safer. With other "
-    "parameters (study ensemble), traded control stays safer than the automation alone in bias "
-    "fog, and less safe than the gate with a false echo; but with a false echo some other rules "
-    "become safer than the gate, and without an echo handing over becomes safer than the "
-    "automation alone.";
+    "It depends on how the LiDAR fails: with a small bias, handing over at once to a perfect human "
+    "is safer than each automation of this study, except an automation that uses the right sensor "
+    "and has a calibrated radar. With a false echo a filter whose gate stays shut is safer than "
+    "each rule that hands over, and without any echo the automation alone is safer than these "
+    "rules. With other parameters (study ensemble), traded control stays safer than the automation "
+    "alone in bias fog, and less safe than the gate with a false echo; but with a false echo some "
+    "other rules become safer than the gate, and without an echo handing over becomes safer than "
+    "the automation alone.";
 constexpr std::string_view kPolicyWouldChange =
     "A driver who needs time (study takeover), a calibrated radar, a filter that knows the fog, or "
     "a LiDAR that fails in another way.";
@@ -231,18 +233,19 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
       ByRule(comparison, "wrong_automation_s", "policy-wrong",
              "Driving time of the automation on a wrong track, by policy")};
   section.method = fmt::format(
-      "{} seeds of {}, each with every policy at its defaults and with rivals: a filter that "
-      "refuses outliers, with and without a gate that reopens after five refusals; a filter that "
-      "adapts its noise; an automation that drives again only when its track agrees with both "
-      "sensors; and a driver who must be asked, while the automation leaves out the sensor that is "
-      "to blame. With realistic noise the hand-back by the fusion hardly ever happens in bias fog, "
-      "because the radar's offset uses up most of its tolerance. {} {} Calibrated radar: without "
-      "its mounting offset, "
-      "which is subtracted from the centre of the DoC. SI is the paper's, against the run without "
-      "traded control of the same seed. It is a mean of ratios of small numbers, so compromised "
-      "safety in metres comes first. The paper's radar has an offset of 0.946 m, so a policy that "
-      "uses only the radar drives with this error. All differences from traded control: {} "
-      "comparisons, in the CSV with p-values adjusted by Holm.",
+      "{} seeds of {}, each with every policy at its default parameters. Five other rules are "
+      "compared, too: a filter that refuses outliers and whose gate stays shut; such a filter "
+      "whose gate reopens after five refusals; a filter that adapts its noise; traded control in "
+      "which the automation drives again only when its track agrees with both sensors (hand-back "
+      "by fusion); and a driver who must be asked, while the automation leaves out the sensor that "
+      "is to blame. With realistic noise the hand-back by fusion hardly ever happens in bias fog, "
+      "because the radar's offset of 0.946 m is nearly as large as the tolerance of this rule, 1 "
+      "m. {} {} A calibrated radar has no mounting offset; the centre of the Degree of Conflict "
+      "(DoC) is then smaller by this offset. SI (safety improvement) is the paper's measure; it "
+      "compares a run with the run of the same seed without traded control. It is a mean of ratios "
+      "of small numbers, so the first table has the compromised safety in metres. A policy that "
+      "uses only the paper's radar drives with the error of its offset. The CSV file has all "
+      "differences from traded control; {} of them have p-values, which are adjusted by Holm.",
       comparison.seeds(), FogModesText(), HumansText(), RealisticNoiseText(),
       comparison.Comparisons(comparison.VariantNamed("traded")));
   result.files = {{"policy.csv", comparison.Csv(comparison.VariantNamed("traded"))}};

@@ -20,7 +20,7 @@ constexpr std::string_view kNoTradedControl = "none";
 /// without a request. Zhang et al. 2019 found a mean of 2.7 s in 129 studies.
 constexpr std::array kLatencies_s{0, 1, 2, 3, 4, 5};
 /// Standard deviation of the time to take over, s. The value is our choice: it is smaller than the
-/// difference of the means.
+/// difference between two neighbouring mean times.
 constexpr double kDeviation_s = 0.5;
 /// Probability that a driver never takes over. The value is our choice: one driver in ten is enough
 /// to show the cost.
@@ -150,8 +150,9 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
   return figure;
 }
 
-/// A table of the mean compromised safety. Its rows are the mean times to take over, with each
-/// human. Its columns are the fogs, with two behaviours of the automation.
+/// A table of the mean compromised safety. It has a row for each mean time that a human needs to
+/// take over, and for each model of the human. It has a column for each fog and each of two
+/// behaviours of the automation.
 /// @param noise the end of the names of the cases: "" or kWithRealisticNoise
 report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_view noise) {
   report::StudyTable table{
@@ -194,12 +195,12 @@ report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_v
 }
 
 constexpr std::string_view kTakeOverAnswer =
-    "In the paper's fog the gain shrinks while a perfect driver takes over, until nothing is left, "
-    "and a long wait does harm; with realistic radar noise a part of the gain is left. With a "
-    "false echo a long wait does harm if the automation goes on as it is, and costs nothing if the "
-    "automation leaves out the deceived sensor meanwhile. If there is no echo at all, the "
-    "automation alone is safer with the "
-    "parameters of this study, and less safe with every parameter set of study ensemble.";
+    "In the paper's fog the gain is smaller if a perfect driver needs longer to take over: after "
+    "some seconds nothing is left, and a long wait does harm; with realistic radar noise a part of "
+    "the gain is left. With a false echo a long wait does harm if the automation goes on as it is, "
+    "and costs nothing if the automation leaves out the deceived sensor meanwhile. Without any "
+    "echo the automation alone is safer than traded control if the parameters are those of this "
+    "study, but with every parameter set of study ensemble it is less safe than traded control.";
 constexpr std::string_view kTakeOverWouldChange =
     "A warning before the fog begins, fog that lasts much longer than a request, a noisier radar, "
     "or a driver who errs.";
@@ -239,7 +240,7 @@ std::vector<PlannedClaim> TakeOverClaims() {
   };
 }
 
-/// Repeats, with realistic noise, the claims that support the answer.
+/// The claims on runs with realistic noise. They support the study's answer.
 std::vector<PlannedClaim> NoisyClaims() {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {
@@ -304,12 +305,14 @@ StudyResult RunTakeOverStudy(const StudyContext& context) {
   section.method = fmt::format(
       "{} seeds of {}. The time to take over is log-normal with the mean that is shown and a "
       "standard deviation of {:g} s; at 0 s the driver need not be asked, as in the paper. Until "
-      "the driver is there, the automation stays as it is, leaves out the sensor that is to blame, "
-      "refuses values outside the gate of its filter, or slows down by 0.5 m/s2. If the driver "
-      "does not take over within 10 s, a minimal risk manoeuvre begins. {} A driver who must be "
-      "aware gets authority from an awareness of 0.8 on. {} The main comparison is repeated with "
-      "it (takeover-noise.csv). All differences from no traded control: {} comparisons, in the CSV "
-      "with p-values adjusted by Holm.",
+      "the driver is there, the automation does not accelerate. Four variants differ in what else "
+      "it does: nothing (stay); it leaves out the sensor that is to blame (isolate); it refuses "
+      "values outside the gate of its filter (gate); or it slows down with 0.5 m/s2 (slow down). "
+      "If the driver does not take over within 10 s, a minimal risk manoeuvre begins. {} In the "
+      "cases with a human who must be aware, the driver gets authority only if the awareness is at "
+      "least 0.8. {} The main comparison is repeated with this noise (takeover-noise.csv). The "
+      "file takeover.csv has all differences from no traded control; {} of them have p-values, "
+      "which are adjusted by Holm.",
       comparison.seeds(), FogModesText(), kDeviation_s, HumansText(), RealisticNoiseText(),
       comparison.Comparisons(0));
   result.files = {{"takeover.csv", comparison.Csv(comparison.VariantNamed(kNoTradedControl))},

@@ -61,8 +61,9 @@ PlannedClaim ClaimWith(const EnsembleSet& set, PlannedClaim claim) {
   return claim;
 }
 
-/// The design of a study for one parameter set. All claims of such a study come from one
-/// comparison.
+/// The design of a study for one parameter set. Only the studies whose claims come from a
+/// Comparison have a design.
+/// @throws std::out_of_range for other studies
 StudyDesign DesignOf(const Ensemble& ensemble, std::string_view study, const EnsembleSet& set) {
   if (study == "policy") {
     const auto overrides = ensemble.Overrides(set, "paper.json");
@@ -91,7 +92,7 @@ const Named& NamedIn(const std::vector<Named>& all, std::string_view name) {
 struct SharedRuns {
   std::string_view study;
   std::int64_t one_of = 1;
-  std::vector<std::size_t> quoted;  // indices of the claims
+  std::vector<std::size_t> quoted;  // indices of the claims in Ensemble::quoted
   std::set<std::string> cases;
   std::set<std::string> variants;
 
@@ -109,9 +110,10 @@ struct SharedRuns {
   }
 };
 
-/// The claim with its numbers. If runs end in collisions, a claim on safety becomes a claim on
-/// numbers of seeds. It compares the seeds in which the run of the first cell is less safe with the
-/// seeds in which the run of the second cell is less safe.
+/// The claim with its numbers. If runs end early, a claim on the sign of a difference in safety
+/// cannot hold. Then it becomes a claim on two numbers of seeds: the seeds in which the run of the
+/// first cell is less safe, and the seeds in which the run of the second cell is less safe
+/// (Comparison::LessSafe()).
 Claim SafetyWithCollisions(const Comparison& comparison, const PlannedClaim& planned) {
   Claim claim = ClaimOf(comparison, planned);
   if (claim.hindrance.empty() || planned.measure != kShortfall || planned.sign == Sign::kEqual) {
@@ -168,8 +170,8 @@ void RunStringOf(const Ensemble& ensemble, const StudyContext& part, std::size_t
   result.runs += static_cast<std::int64_t>(strings.size()) * part.seeds.count();
 }
 
-/// Adds claims of the study `study`, computed with one parameter set, to the quoted claims of this
-/// study that have the same text.
+/// Adds claims of study `study`, computed with one parameter set, to `result`. Each claim is added
+/// to the quoted claim (QuotedClaim) of this study that has the same text.
 void AddClaims(std::string_view study, const EnsembleSet& set, std::vector<Claim> claims,
                EnsembleRuns& result) {
   for (Claim& claim : claims) {
@@ -208,11 +210,12 @@ void RunDelaysOf(const Ensemble& ensemble, const StudyContext& part, const Ensem
   result.runs += of_seed * part.seeds.count();
 }
 
-/// A part of the runs of study `ensemble`, with seeds and progress of its own.
+/// A part of the runs of study `ensemble`. Each part has its own number of seeds and its own
+/// progress.
 struct Job {
   std::int64_t one_of = 1;
   std::int64_t times = 1;
-  std::int64_t units = 0;  // of the job's progress, for each seed
+  std::int64_t units = 0;  // units of progress for each seed
   std::function<void(const StudyContext& part, EnsembleRuns& result)> run;
 
   /// The seeds of the job, from the first seed of `all` on. The number of seeds is all.count() *
@@ -252,8 +255,8 @@ std::vector<SharedRuns> PlanShared(const Ensemble& ensemble) {
   return all;
 }
 
-/// Adds a job for each parameter set, if a claim of the study `study` is quoted. All quoted claims
-/// of this study share the runs of a job.
+/// Adds a job for each parameter set, if Ensemble::quoted has a claim of the study `study`. All
+/// quoted claims of this study share the runs of a job.
 template <class Run>
 void AddJobs(const Ensemble& ensemble, std::string_view study, std::int64_t units, Run run,
              std::vector<Job>& jobs) {

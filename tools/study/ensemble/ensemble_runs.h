@@ -1,5 +1,6 @@
-// The runs of study `ensemble`. They repeat the comparisons that decide claims of other studies, in
-// the scenarios of these studies, with each parameter set.
+// The runs of study `ensemble`. Other studies make claims, and comparisons of runs decide whether a
+// claim holds. Study `ensemble` repeats these comparisons with each parameter set, in the scenarios
+// of the other studies.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +18,9 @@ struct EnsembleRuns {
   std::int64_t runs = 0;
 };
 
-/// Runs, for each study, only the cases and variants that the quoted claims compare. Quoted claims
-/// of one study that have a case in common share runs: all their cases are run with all their
-/// variants. All sets have the same seeds.
+/// Runs, for each study, only the cases and variants that the quoted claims compare. Claims of one
+/// study that need equally many seeds and have a case in common form a group. All cases of a group
+/// are run with all variants of the group. All parameter sets have the same seeds.
 /// @throws InputError, StudyStopped; std::out_of_range if a quoted claim does not exist in its
 /// study
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,

@@ -17,13 +17,14 @@ namespace fogline::study {
 namespace {
 
 constexpr std::string_view kEnsembleAnswer =
-    "Six of the ten headings hold with every parameter set; that on a slow driver is "
-    "undecided with one set, and those on leaving out the deceived sensor, on the paper's "
-    "threshold and on a leader that brakes hard are opposite with one, two and four sets. The "
-    "side claims hold with every set for a driver who errs, for leaving out the deceived "
-    "sensor, and for the window and the sign of the Degree of Conflict. With a false or a "
-    "missing echo some side claims are opposite with every set, because there some rules that "
-    "hand over are a little safer than the gate or the automation alone.";
+    "The headings of six of the ten findings hold with every parameter set; the heading on a slow "
+    "driver is undecided with one set; the heading on leaving out the deceived sensor is opposite "
+    "with one set, the heading on the paper's threshold with two sets, and the heading on a leader "
+    "that brakes hard with four sets. The side claims hold with every set for a driver who errs, "
+    "for leaving out the deceived sensor, and for the window and the sign of the Degree of "
+    "Conflict. With a false or a missing echo some side claims are opposite with every set, "
+    "because there some rules that hand over are a little safer than the gate or the automation "
+    "alone.";
 constexpr std::string_view kEnsembleWouldChange =
     "Other parameter sets that meet the table, or other sensors in dense fog.";
 
@@ -79,7 +80,7 @@ report::StudyTable VerdictTable(std::span<const EnsembleSet> sets, const JudgedC
                                 std::int64_t seeds) {
   report::StudyTable table{
       .caption = fmt::format("Verdicts on the heading and on the side claims of each finding ({} "
-                             "seeds)",
+                             "seeds, with the exceptions that the method names)",
                              seeds),
       .columns = ColumnsOf("finding", sets)};
   for (const Placed& placed : Places()) {
@@ -178,29 +179,30 @@ std::string EnsembleCsv(std::span<const EnsembleSet> sets, std::span<const Claim
 
 std::string EnsembleMethod(std::int64_t seeds, std::size_t comparisons, std::size_t sets) {
   return fmt::format(
-      "{0} seeds of the {1} comparisons that decide on the findings of docs/findings.md, with each "
-      "of the {2} parameter sets of scenario/ensemble. Scenarios, rules and measures are those of "
-      "the study that makes the claim. In paper.json a set replaces all of its fields. "
-      "dense_fog.json describes another fog and other sensors, so it keeps the fields that it "
-      "sets; the set replaces the controllers, the driver, the window and the safety floor, and "
-      "the gaps follow from them. The changes that a case makes stay, such as realistic noise. A "
-      "calibrated radar is one without the offset of the set. A comparison holds in a set if its "
+      "{0} seeds (exceptions below) of the {1} comparisons that decide on the findings of "
+      "docs/findings.md, with each of the {2} parameter sets of scenario/ensemble. Scenarios, "
+      "rules and measures are those of the study that makes the claim. In paper.json all fields of "
+      "a set get the set's values. dense_fog.json describes another fog and other sensors, so a "
+      "field that dense_fog.json contains keeps its value; the set replaces only the controllers, "
+      "the driver, the window, the safety floor and the filter's noise of the radar's range rate, "
+      "and the gaps follow from them. The changes that a case makes stay, such as realistic noise. "
+      "A calibrated radar does not have the offset of the set. A comparison holds in a set if its "
       "difference has the sign that the finding says, at 5 % after Holm's correction for all {3} "
       "comparisons in all sets together. It is opposite if the difference has the other sign at "
       "the same level, and undecided otherwise. The heading of a finding has a verdict of its own, "
       "and so have the other claims below it together (side claims): they hold in a set if each of "
       "them holds, are opposite if at least one is opposite, and are undecided otherwise. A wait "
       "leaves nothing of the gain if the remaining gain is below the margin; a rule costs nothing "
-      "if its cost is below the margin. Comparisons whose differences are large use only the "
-      "first of {4} parts of the seeds. If runs end in collisions, the runs of each seed are "
-      "compared: a run that "
-      "collides is less safe than one that does not, and two runs that do not collide are compared "
-      "by their compromised safety (exact test of McNemar). Each claim of this study shows the "
-      "least certain comparison of those that are decided. Finding 4: {5} situations for each set, "
-      "because SI varies much between situations. Finding 7: bias fog with near-range noise, which "
-      "the study states itself, so a set changes the window, the offset, the motion and the size "
-      "of the fog's effect. Its thresholds come from {6} runs in clear air for each seed, and its "
-      "delays are means over all visibilities.",
+      "if its cost is below the margin. Comparisons whose differences are large use only the first "
+      "of {4} parts of the seeds (column n of ensemble.csv). If runs end in collisions, the runs "
+      "of each seed are compared: a run that collides is less safe than one that does not, and two "
+      "runs that do not collide are compared by their compromised safety (exact test of McNemar). "
+      "Each row of the claims shows the least certain one of its comparisons that hold or are "
+      "opposite: the one with the largest p-value. Finding 4: {5} situations for each set, because "
+      "SI varies much between situations. Finding 7: bias fog with near-range noise. The study "
+      "itself fixes this noise, so a set affects the result only through the window, the offset, "
+      "the motion and the size of the fog's effect. Its thresholds come from {6} runs in clear air "
+      "for each seed, and its delays are means over all visibilities.",
       seeds, comparisons, sets, comparisons * sets, kLarge, seeds * kManySituations,
       kDelayClearAir);
 }

@@ -172,7 +172,7 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                   {3},
                   InSet::kOpposite}},
             .why = "In set 3 the wait costs safety although the deceived sensor is left out, and "
-                   "the harm of a wait with this sensor is not certain."},
+                   "it is not certain that a wait does harm if the sensor is used."},
        .side = {.claims = {{.study = "takeover",
                             .says = "With a false echo, leaving out the deceived sensor during a "
                                     "wait is safer than a driver without a wait.",

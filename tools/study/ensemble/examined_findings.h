@@ -14,8 +14,8 @@ inline constexpr std::int64_t kLarge = 8;
 /// study `threshold`.
 inline constexpr std::int64_t kManySituations = 8;
 
-/// All findings, in the order of docs/findings.md. A person writes the exceptions (KnownException)
-/// after the runs.
+/// All findings, in the order of docs/findings.md. Some claims do not hold in some parameter sets.
+/// After the runs, a person adds these exceptions to the finding (KnownException).
 const std::vector<ExaminedFinding>& ExaminedFindings();
 
 }  // namespace fogline::study

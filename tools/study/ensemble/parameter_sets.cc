@@ -15,7 +15,8 @@
 namespace fogline::study {
 namespace {
 
-// Columns of the file before those of the sets: quantity, unit, lowest value, highest value, scale.
+// The first columns of the file are quantity, unit, lowest value, highest value and scale. Then
+// comes a column for each set.
 constexpr std::size_t kScale = 4;
 constexpr std::size_t kFirstSet = 5;
 

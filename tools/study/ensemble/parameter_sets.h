@@ -1,5 +1,6 @@
-// Reads the parameter sets of scenario/ensemble, and makes overrides of the studies' scenarios from
-// them. With each set the paper's experiment meets its published table.
+// Reads the parameter sets in scenario/ensemble, and makes overrides for the scenarios of the
+// studies from them. A parameter set is a list of values for fields of a scenario. With the values
+// of each set, the scenario paper.json has nearly the same table of results as the paper.
 #pragma once
 
 #include <filesystem>
@@ -26,10 +27,12 @@ inline constexpr const char* kSetsFile = "ensemble/sets.csv";
 /// The sets, in the order of the file. @throws InputError
 std::vector<EnsembleSet> ReadEnsembleSets(const std::filesystem::path& scenarios);
 
-/// The overrides with which a scenario has the parameters of the set. For paper.json these are all
-/// fields of the set. Another file describes another experiment. So the file keeps the values of
-/// fields that it contains, such as its fog and its sensors. But the gaps (the derived fields) come
-/// from the set, so that a run begins in equilibrium.
+/// The overrides that give a scenario the values of the set. For paper.json these are all fields of
+/// the set. Another file describes another experiment, such as another fog and other sensors. So a
+/// field that this file contains keeps its value. There are two exceptions. The derived fields (the
+/// gaps) have the values of the set, so that a run begins in equilibrium. /acc/standstill_m is
+/// computed for the file, because the value of the set includes the error of the fused distance in
+/// paper.json.
 /// @pre the sensors of another file have no offset
 /// @throws InputError
 std::vector<std::string> OverridesOf(const EnsembleSet& set, const std::filesystem::path& file);

@@ -34,7 +34,8 @@ bool IsAtLowerBound(const Claim& claim, Bound bound) {
   return bound == Bound::kBoth ? claim.difference.mean < 0 : bound == Bound::kBelow;
 }
 
-/// The claim's difference minus its bound: -margin if `is_lower`, otherwise +margin.
+/// The claim's difference minus one bound of the claim. The lower bound is -margin, and the upper
+/// bound is +margin.
 Estimate FromBound(const Claim& claim, bool is_lower) {
   return Moved(claim.difference, is_lower ? claim.margin : -claim.margin);
 }
@@ -59,9 +60,9 @@ OneSide SideOf(const Claim& claim, Bound bound) {
 
 Sign Turned(Sign sign) { return sign == Sign::kLess ? Sign::kMore : Sign::kLess; }
 
-/// The claim that the runs support. If the outcome is opposite, the claim has the other sign. A
-/// claim of equality that is decided at one bound becomes a claim on the sign of the difference
-/// from this bound.
+/// The claim that the runs support. If the outcome is opposite, the result has the other sign. A
+/// claim of equality may be decided at one bound. The result then claims that the difference from
+/// this bound is above 0, or that it is below 0.
 Claim AsDecided(Claim claim, Bound bound, InSet outcome) {
   const bool holds = outcome == InSet::kHolds;
   if (claim.sign != Sign::kEqual) {

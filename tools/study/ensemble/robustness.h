@@ -29,7 +29,7 @@ struct QuotedClaim {
   std::int64_t times = 1;  // factor for the number of seeds; above 1 if the difference varies much
 };
 
-/// A claim with each parameter set.
+/// A claim, with its numbers for each parameter set.
 struct ClaimInSets {
   QuotedClaim quoted;
   std::vector<Claim> sets;  // in the order of the sets
@@ -108,9 +108,9 @@ std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t se
 /// Makes a claim about one part of a finding. The claim says: the verdicts that the runs give on
 /// this part are the verdicts that the author states. The claim has the difference and the sign of
 /// the least certain comparison. Comparisons with the outcome kUndecided are left out; of the
-/// others, the comparison with the largest p-value is the least certain one. If any outcome in the
-/// runs differs from the author's, the claim has a hindrance. The hindrance names claim, set and
-/// outcome.
+/// others, the comparison with the largest p-value is the least certain one. If outcomes in the
+/// runs differ from the author's, the claim does not hold. Claim::hindrance then names each such
+/// outcome with its claim and its set.
 /// @param claims the claims of this part of the finding, in their order
 /// @param judged the outcomes of these claims
 Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,

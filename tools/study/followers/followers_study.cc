@@ -54,7 +54,8 @@ std::vector<StudyCase> FollowerCases() {
   return cases;
 }
 
-/// The followers that the answer mentions, behind a host with realistic noise.
+/// The followers that the answer of the study (kFollowersAnswer) mentions, behind a host whose
+/// radar has realistic noise.
 std::vector<StudyCase> NoisyFollowers() {
   constexpr std::array<std::string_view, 4> kNames{"bias fog: acc", "bias fog: normal human",
                                                    "beam fog: acc", "beam fog: aggressive human"};
@@ -76,12 +77,11 @@ constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
 
 constexpr std::string_view kFollowersAnswer =
     "It helps an ACC that follows the host. In the paper's fog traded control does nothing for a "
-    "human "
-    "follower, "
-    "whose own fluctuations are larger than the effect; with a false echo an aggressive one is "
-    "less safe, unless the radar has realistic noise. The last car of a string brakes less "
-    "hard, whatever kind of driver the string "
-    "has.";
+    "human follower, whose own fluctuations are larger than the effect; with a false echo it "
+    "slightly raises the mean compromised safety of an aggressive human follower (lowers it if the "
+    "radar has realistic noise), although the smallest gap and the smallest time to collision of "
+    "this follower become larger. The last car of a string of followers brakes less hard with "
+    "traded control, whatever kind of driver the string has.";
 constexpr std::string_view kFollowersWouldChange =
     "Followers with automatic emergency braking, or a host that brakes harder.";
 
@@ -101,7 +101,7 @@ std::vector<PlannedClaim> ClaimsOnFirst() {
                 Sign::kEqual, kNoShortfall_m)};
 }
 
-/// The claims on the first follower behind a host with realistic noise.
+/// The claims on the first follower behind a host whose radar has realistic noise.
 std::vector<PlannedClaim> NoisyClaimsOnFirst() {
   const auto claim = [](std::string_view says, std::string_view name, Sign sign,
                         double margin = 0) {
@@ -132,8 +132,8 @@ report::StudyTable FollowersMainTable(const Comparison& comparison) {
                             kFollowerTable);
 }
 
-/// A figure of a quantity as a function of the place in the string, for the strings behind one
-/// variant of the host.
+/// A figure that shows a quantity for each place in a string (a row of cars that follow the host).
+/// It has a curve for each string behind one variant of the host.
 report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view variant,
                             std::string id, std::string title, std::string y_label,
                             std::vector<double> CarInString::*values) {
@@ -162,7 +162,7 @@ report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_
   return figure;
 }
 
-/// A measure that the study reports for each place.
+/// A measure that the study reports for each place in a string.
 struct StringMetric {
   std::string_view name;
   std::vector<double> CarInString::*values;
@@ -273,12 +273,12 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
       "{} seeds of paper.json and dense_fog.json with other drivers behind the host, without and "
       "with traded control at the scenario's threshold. Gaps at step 0 are those of the ACC. Other "
       "drivers reach their own gap before the fog begins. Measures are those of the first car "
-      "behind the host; collisions are those of any car. A human driver is the IDM of its style, "
-      "with the errors and the reaction time of the Human Driver Model. Strings: {} cars of a kind "
-      "behind the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled. "
-      "Their measures begin a second before the fog. The column amplification is a "
-      "car's largest deceleration divided by that of the car ahead; it is empty if the car ahead "
-      "brakes with less than 0.01 m/s2. {}",
+      "behind the host; collisions are those of any car. A human driver is the IDM (Intelligent "
+      "Driver Model) with the parameters of a style, and with the errors and the reaction time of "
+      "the Human Driver Model. Strings: {} cars of a kind behind the host of dense_fog.json. Here "
+      "the fog begins at 60 s, so that every gap has settled before it. Their measures begin a "
+      "second before the fog. The column amplification is a car's largest deceleration divided by "
+      "that of the car ahead; it is empty if the car ahead brakes with less than 0.01 m/s2. {}",
       comparison.seeds(), kStringCars, RealisticNoiseText());
   result.files = {{"followers.csv", comparison.Csv(0)}};
   AddStrings(context, strings, result);

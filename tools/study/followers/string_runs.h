@@ -18,7 +18,7 @@ namespace fogline::study {
 inline constexpr std::size_t kStringCars = 5;
 
 /// Values of one car, seed by seed. The measurement begins one second before the fog. The host is
-/// the car at place 0, and has only a deceleration.
+/// the car at place 0. Of the host, only max_deceleration_mps2 has values.
 struct CarInString {
   std::vector<double> max_deceleration_mps2;
   /// Ratio of the car's largest deceleration to the largest deceleration of the car ahead. A
@@ -38,20 +38,22 @@ struct StringOutcome {
 
 /// The host without and with traded control.
 const std::vector<StudyVariant>& HostVariants();
-/// Strings: rows of cars behind the host. All drivers of a string are of one kind, or each driver
-/// is drawn at random. Two kinds exist a second time, with realistic noise: `acc` and `normal
-/// humans`.
+/// The kinds of strings. A string is a row of cars behind the host. All drivers of a string are of
+/// one kind, or each driver is drawn at random. Two kinds exist a second time, with realistic
+/// noise: `acc` and `normal humans`.
 std::vector<StudyCase> StringKinds();
 
-/// Runs all kinds with all variants. The result is ordered by kind. In the scenarios of `kinds` the
-/// fog must begin after the string has settled. @throws InputError, StudyStopped
+/// Runs each kind of string with each variant of the host. The result is ordered by kind. The
+/// measurement begins one second before the fog. So in the scenarios of `kinds`, the fog must begin
+/// after the cars have reached steady gaps. @throws InputError, StudyStopped
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
 
-/// The text of the claim about strings of cars of this kind.
+/// The sentence of the claim that ClaimsOnStrings() makes about this kind of string (row of cars).
 std::string StringSays(std::string_view kind);
-/// For each kind of string with HostVariants(), the claim that the last car brakes less hard behind
-/// a host with traded control.
+/// For each kind of string (row of cars behind the host), the claim that the last car brakes less
+/// hard behind a host with traded control than behind a host without it.
+/// @pre `strings` has both HostVariants() of each kind
 std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings);
 
 }  // namespace fogline::study

@@ -28,16 +28,18 @@ struct HumanMix {
 /// Number of mixes: two humans with two radars each.
 inline constexpr std::int64_t kHumanMixes = 4;
 
-/// Runs the mixes of both humans with drawn radars, then of both humans with a realistic radar.
-/// Each situation of a mix is a unit of progress. @throws InputError, StudyStopped
+/// Runs four mixes: both humans with the radar noise that is drawn at random for each situation,
+/// then both humans with a realistic radar. The progress counts the situations of all mixes.
+/// @throws InputError, StudyStopped
 std::vector<HumanMix> RunBothHumans(const StudyContext& context);
 
-/// A table of both humans side by side, with one radar.
+/// A table of the mixes with this radar, with both humans side by side.
 report::StudyTable TableOfHumans(std::span<const HumanMix> mixes, MixedRadar radar);
 std::string HumansCsv(std::span<const HumanMix> mixes);
 
-/// The claim on the difference in SI of rule `a` and rule `b`, paired situation by situation. `of`
-/// names the mix; "" stands for the mix with drawn humans.
+/// The claim on the difference in SI (safety improvement) between rule `a` and rule `b`. The values
+/// are paired situation by situation. `of` names the mix; "" stands for the mix in which each
+/// situation has a random human (MixedHuman::kDrawn).
 Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, std::string_view a,
                 std::string_view b, Sign sign, double margin = 0);
 /// The rules of ClaimsOnFixed().

@@ -26,7 +26,7 @@ std::vector<CurvePoint> CurveOf(std::span<const RuleValues> fixed,
   return curve;
 }
 
-/// The gain that BestAt() finds. If the RHE is beyond the curve, the end of the curve is used.
+/// The gain of BestAt(). An RHE beyond the curve is moved to the nearer end of the curve.
 double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   const auto [least, most] = std::ranges::minmax(curve, {}, &CurvePoint::rhe_pct);
   const std::optional<CurvePlace> place =

@@ -27,7 +27,8 @@ struct CurvePlace {
 
 /// The place with this RHE on the curve. The curve is straight between its points. If several
 /// places have this RHE, the result is the place with the largest gain. For example, all thresholds
-/// that are never reached in clear air have the same RHE. nullopt if the RHE is beyond the curve.
+/// that are never reached in clear air have the same RHE. The result is nullopt if the RHE is
+/// beyond the curve.
 /// @param curve at least one point, in order of threshold
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct);
 
@@ -49,8 +50,8 @@ struct AtEqualEngagement {
   /// Possible error of the curve at the place (InterpolationErrorAt()), in units of gain.
   double interpolation_error = 0;
 
-  /// Verdict at equal RHE. Both ends of the interval are first moved outwards by the possible error
-  /// of the curve.
+  /// Verdict at equal RHE. Both ends of the interval of `difference` are first moved outwards by
+  /// interpolation_error.
   Verdict verdict() const;
 };
 
@@ -68,8 +69,8 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
 /// The result is 4 s (1 - s) d, where s is the place's `share`, and d is the larger of the two
 /// values e max(1, (g + h)/(2 g)). If only one point has an e, d is the value of this point. If no
 /// point has an e, d is the difference in gain between the two points. The error is at most this
-/// result if both points have an e, and if the curve bends once between the two points, or bends
-/// steadily.
+/// result under two conditions: both points have an e, and the curve between the two points bends
+/// once or bends steadily.
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline::study

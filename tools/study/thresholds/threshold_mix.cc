@@ -28,8 +28,8 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice. Each range contains the value of paper.json. The leader of paper.json
-// keeps its speed, so the amplitude of this speed is 0.
+// The mix is our choice. Each range contains the value of paper.json. For kLeadAmplitude_mps this
+// value is 0, because the leader of paper.json keeps its speed.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of the fog model `bias`; paper.json has 0.216
@@ -106,8 +106,9 @@ void AddToMember(const RunValues& run, RuleMember& member) {
 }  // namespace
 
 std::vector<RuleFamily> RuleFamilies() {
-  // The grid is dense, because other rules are compared with values between two points of the grid.
-  // The grid is densest where the RHE falls fastest.
+  // The grid of fixed thresholds is dense, because the other families are compared with values that
+  // are interpolated between two points of this grid. The grid is densest where the RHE falls
+  // fastest.
   std::vector<double> fixed;
   for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
     fixed.push_back(permille / 1000.0);
@@ -162,11 +163,14 @@ MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, 
 
 std::string MixText() {
   return fmt::format(
-      "drawn alike for every rule: paper.json with a leader whose speed swings by up to {:g} m/s, "
-      "{:g} % in clear air, else fog of either model (visibility {:g} to {:g} m, bias {:g} to {:g} "
-      "m), mounting offset {:g} to {:g} m, radar noise {:g} to {:g} m, LiDAR noise {:g} to {:g} m; "
-      "a human who sees the fog, and who in {:g} % of the situations also misjudges and loses "
-      "awareness (down to {:g} to {:g}), and a follower of drawn kind and style",
+      "They are drawn at random, and are the same for every rule. Each is paper.json with a leader "
+      "whose speed varies by up to {:g} m/s. About {:g} % are in clear air; the others have fog of "
+      "one of the two models, bias or beam (visibility {:g} to {:g} m, bias {:g} to {:g} m). The "
+      "radar's mounting offset is {:g} to {:g} m, its noise {:g} to {:g} m, and the LiDAR's noise "
+      "{:g} to {:g} m. The human sees only as far as the fog allows. In about {:g} % of the "
+      "situations the human also misjudges distances and loses awareness; while the automation "
+      "drives, the awareness falls towards a drawn value between {:g} and {:g}. Kind and style of "
+      "the follower are drawn, too.",
       kLeadAmplitude_mps.most, 100 * kClearShare, kVisibility_m.least, kVisibility_m.most,
       kBias_m.least, kBias_m.most, kMounting_m.least, kMounting_m.most, kRadarStd_m.least,
       kRadarStd_m.most, kLidarStd_m.least, kLidarStd_m.most, 100 * kErringShare, kMonitoring.least,

@@ -1,4 +1,5 @@
-// The runs of study `threshold`: rules with a parameter, over a mix of situations.
+// The runs of study `threshold`. The study compares rules that decide when the human drives, such
+// as a fixed threshold, over a mix of situations.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,9 @@
 
 namespace fogline::study {
 
-/// A kind of rule with a parameter that trades human engagement against safety. Each member of the
-/// family is the rule with one value of the parameter.
+/// Rules of one kind, such as all fixed thresholds. A rule has a parameter that trades human
+/// engagement against safety. Each member of the family is the rule with one value of the
+/// parameter.
 struct RuleFamily {
   std::string name;
   std::vector<double> values;  // values of the parameter, one for each member
@@ -54,7 +56,7 @@ enum class MixedRadar {
 
 /// All rules. The first family has the fixed thresholds, in ascending order.
 std::vector<RuleFamily> RuleFamilies();
-/// The families with only the rules of these names. A family without such a rule is left out.
+/// The rules with these names, grouped by family. Families without any of these rules are left out.
 std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
 
 /// Runs all situations. Each seed has one situation, which is the same for every rule, human and

@@ -1,5 +1,6 @@
-// Study `threshold`: compares adaptive thresholds with fixed thresholds of the same redundant
-// engagement, in a mix of situations. An adaptive threshold depends on the situation.
+// Study `threshold`: asks whether a threshold that changes with the situation (adaptive) is better
+// than a fixed threshold. Both are compared at equal redundant human engagement, in a mix of
+// situations.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +22,8 @@
 namespace fogline::study {
 namespace {
 
-/// Comparisons of the members with the curve of fixed thresholds, in the order of
-/// MixedRuns::members. The comparisons of members on the curve itself are empty.
+/// Comparisons of each rule in MixedRuns::members with the curve of the fixed thresholds, in the
+/// order of MixedRuns::members. The fixed thresholds are members, too. Their comparisons are empty.
 struct Beside {
   std::vector<AtEqualEngagement> si;         // in percentage points
   std::vector<AtEqualEngagement> shortfall;  // in m; less is better
@@ -73,14 +74,15 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 }
 
 constexpr std::string_view kThresholdAnswer =
-    "No. In a mix of situations, rules that engage the human less in clear air are also safer, so "
-    "the best rule hardly ever hands over, even to a human who never errs; with two parameter sets "
-    "of study ensemble the paper's threshold is safer. At equal engagement an adaptive threshold "
-    "does not beat a fixed one; dropping the deceived sensor gains a little.";
+    "No. In a mix of situations, a rule that engages the human less in clear air is nearly always "
+    "safer, and the best rule hardly ever hands over, even to a human who never errs; with two "
+    "parameter sets of study ensemble the paper's threshold is safer than such a rule. At equal "
+    "engagement an adaptive threshold does not beat a fixed one; dropping the deceived sensor "
+    "gains a little.";
 constexpr std::string_view kThresholdWouldChange =
     "Situations in which the automation is deceived for longer.";
 
-/// The claim on the difference in SI between a rule and the fixed threshold of equal RHE.
+/// The claim on the difference in SI between a rule and the fixed threshold that has the same RHE.
 Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
                  std::string_view rule, Sign sign, double margin = 0) {
   const AtEqualEngagement& one = beside.si[RuleNamed(mixed, rule)];
@@ -120,8 +122,7 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
   return claims;
 }
 
-/// For each human and each radar, two claims: the highest threshold against the paper's threshold,
-/// and the paper's threshold against a low threshold.
+/// The two claims of ClaimsOnFixed() for each human and each radar.
 std::vector<Claim> ClaimsOnHumans(std::span<const HumanMix> mixes) {
   std::vector<Claim> claims;
   for (const HumanMix& mix : mixes) {
@@ -211,7 +212,7 @@ std::string ThresholdCsv(const MixedRuns& mixed, const Beside& beside) {
   return csv;
 }
 
-/// The rules of the first table of the study.
+/// The rules of the table "Some rules".
 constexpr std::array<std::string_view, 9> kTelling{
     "fixed 0.3",    "fixed 0.5", "fixed 0.8",        "fixed 0.99",       "adaptive 0.5",
     "adaptive 0.7", "bayes 1",   "availability 0.5", "availability 0.98"};
@@ -245,24 +246,25 @@ std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
     widest = std::max(widest, std::abs(beside.curve[i].rhe_pct - beside.curve[i + 1].rhe_pct));
   }
   return fmt::format(
-      "{} situations, one for each seed, {}. SI has a value only in situations with fog and "
-      "compromised safety, RHE in all with clear air. Equal RHE: the {} fixed thresholds make a "
-      "curve of mean SI over mean RHE. The curve is straight between neighbours, which are at most "
-      "{:.1f} points of RHE apart. A rule is compared with the point of the curve that has its "
-      "RHE. If several thresholds have this RHE, the best of them counts (all thresholds that the "
-      "DoC "
-      "never reaches in clear air have an RHE of 0). The curve can err at that point. For each of "
-      "the two thresholds beside the point, we take the distance of its value from the straight "
-      "line between its two neighbours. The possible error is the larger of the two distances, "
-      "times 4 s (1 - s). Here s is the place of the point between the two thresholds, from 0 to "
-      "1. So the error is 0 at a threshold and largest in the middle. A claim whose interval is "
-      "not farther from 0 than this error does not hold. "
-      "Intervals: {} resamples of the situations, each with its own curve. So the "
-      "intervals take three things into account: rule and curve meet the same situations, the RHE "
-      "of both is uncertain, and each resample chooses its own best threshold. SI is a mean "
-      "of ratios of small numbers, so compromised safety in metres is beside it. Both humans: the "
-      "same situations and some rules, with each human in all of them. {} These situations run "
-      "with the drawn radars, and again with a realistic radar in all of them. {}",
+      "{} situations, one for each seed. {} SI has a value only in situations with fog and "
+      "compromised safety. RHE (redundant human engagement) has a value in all situations with "
+      "clear air. Equal RHE: the {} fixed thresholds make a curve of mean SI over mean RHE. The "
+      "curve is straight between neighbours, which are at most {:.1f} points of RHE apart. A rule "
+      "is compared with the point of the curve that has its RHE. If several thresholds have this "
+      "RHE, the best of them counts (all thresholds that the DoC never reaches in clear air have "
+      "an RHE of 0). The curve can err at that point. For each of the two thresholds beside the "
+      "point, we take the distance of its value from the straight line between its two neighbours. "
+      "The possible error is the larger of the two distances, times 4 s (1 - s). Here s is the "
+      "place of the point between the two thresholds, from 0 to 1. So the error is 0 at a "
+      "threshold and largest in the middle. A claim whose interval is not farther from 0 than this "
+      "error does not hold. Intervals: {} resamples of the situations, each with its own curve. So "
+      "the intervals take three things into account: rule and curve meet the same situations, the "
+      "RHE of both is uncertain, and each resample chooses its own best threshold. SI is a mean of "
+      "ratios of small numbers, so compromised safety in metres is beside it. The tables \"Both "
+      "humans\" and the file threshold-humans.csv have some of the rules. There, either the "
+      "perfect or the fallible human drives in all situations, in place of the drawn human. {} "
+      "These situations run with the drawn radars, and again with a realistic radar in all of "
+      "them. {}",
       mixed.situations, MixText(), beside.fixed, widest, kReplicates, HumansText(),
       RealisticNoiseText());
 }

@@ -15,7 +15,8 @@ namespace fogline::study {
 
 /// Length of a run in clear air after the warm-up, s.
 inline constexpr double kClearRun_s = 115;
-/// Length of the warm-up, s. At its end, the windows are full, and the filter's track has settled.
+/// Length of the warm-up, s. At its end, the windows of the detectors are full, and the filter's
+/// track has settled.
 inline constexpr double kWarmUp_s = 5;
 /// In clear air, every kClearStride-th step counts for ROC and AUC. The stride is longer than the
 /// windows of 8 steps. So the counted steps are nearly independent.
@@ -33,8 +34,8 @@ struct ClearAirPlan {
 };
 
 /// Makes the runs of the plan. The result has the runs of each detector, in the order of the plan's
-/// detectors. The runs of a detector are in order of their seeds. Calls `show` after the runs for
-/// each of the study's seeds. @throws what `show` throws
+/// detectors. The runs of a detector are in order of their seeds. Calls `show` each time the
+/// `runs_per_seed` runs of a seed of the study are done. @throws what `show` throws
 std::vector<std::vector<ClearRun>> RunClearAir(const StudyContext& context, const Traffic& traffic,
                                                const ClearAirPlan& plan, const ShowUnit& show);
 

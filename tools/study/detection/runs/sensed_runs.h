@@ -36,8 +36,8 @@ Traffic TrafficOf(const Scenario& scenario);
 class SensorBench {
  public:
   /// @param traffic must outlive the bench
-  /// @param detectors indices in Detectors(). If all of them are quick, the bench has no filter,
-  /// because quick detectors need none.
+  /// @param detectors indices in Detectors(). If all of them are quick (Detector::is_quick), the
+  ///     bench has no filter, because quick detectors need no prediction of the filter.
   SensorBench(const Traffic& traffic, std::span<const std::size_t> detectors);
 
   /// Calls `visit(truth, scores)` after each step, with the scores in the order of the detectors.

@@ -69,8 +69,8 @@ TEST(ConflictSeedsTest, NoSeedServesTwoPurposes) {
       {seeds.first, seeds.last},
       {study::kCalibrationSeeds + seeds.first, study::kCalibrationSeeds + seeds.last},
       {study::kValidationSeeds + seeds.first, study::kValidationSeeds + seeds.last},
-      {study::kLongClearAirSeeds + study::kQuickClearAir * seeds.first,
-       study::kLongClearAirSeeds + study::kQuickClearAir * (seeds.last + 1) - 1}};
+      {study::kFurtherClearAirSeeds + study::kQuickClearAir * seeds.first,
+       study::kFurtherClearAirSeeds + study::kQuickClearAir * (seeds.last + 1) - 1}};
   std::ranges::sort(used);
   for (std::size_t i = 1; i < used.size(); ++i) EXPECT_GT(used[i].first, used[i - 1].second) << i;
 }
