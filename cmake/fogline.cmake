@@ -2,7 +2,7 @@
 # the static library fogline_NAME. The caller adds the libraries that this library links.
 function(fogline_add_library name)
   # CMake finds the properties of a source file only if its path is spelled the same everywhere. So
-  # no path contains "/./".
+  # the loop takes CMAKE_CURRENT_SOURCE_DIR itself: with a subfolder ".", paths would contain "/./".
   list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE subfolders)
   set(sources)
   set(folders)
@@ -23,7 +23,7 @@ endfunction()
 
 # fogline_write_links(FILE): writes one line "LIBRARY FOLDER,FOLDER... LINKED..." for each library
 # of fogline_add_library(). LIBRARY is the name of the library, FOLDER a folder of its sources, and
-# LINKED a library of Fogline that it links.
+# LINKED a library of Fogline that LIBRARY links.
 function(fogline_write_links file)
   get_property(libraries GLOBAL PROPERTY FOGLINE_LIBRARIES)
   set(lines)
@@ -76,8 +76,9 @@ function(fogline_build_campaign_programs)
     PROPERTIES FIXTURES_SETUP campaign_programs)
 endfunction()
 
-# The time limit of a test of the plain set, in seconds. The limit is several times kPatience
-# (tests/support/command.h), so that it ends only tests that hang, even on a busy machine.
+# The time limit of each test without the label campaign, in seconds. The limit is several times
+# kPatience, the longest time that a test waits for one condition (tests/support/command.h). So the
+# limit ends only a test that hangs, even on a busy machine.
 set(FOGLINE_TEST_LIMIT_S 900)
 
 # fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program
@@ -92,10 +93,11 @@ function(fogline_add_test_program name)
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${name}_tests PROPERTIES UNITY_BUILD ${FOGLINE_UNITY} UNITY_BUILD_MODE GROUP)
-  # All test programs share one precompiled header, because it takes 86 MB. The header does not
-  # contain the matchers of GoogleMock, because they would take 18 MB more, and only some of the
-  # files use them. A shared header needs the same compile definitions in all programs. boost_asio
-  # has such definitions, so all test programs link it.
+  # All test programs share one precompiled header, because a precompiled header takes 86 MB. The
+  # header does not contain the matchers of GoogleMock, because they would take 18 MB more, and only
+  # some of the files use them. All programs that share the header must have the same compile
+  # definitions. The library boost_asio adds compile definitions, so all test programs link
+  # boost_asio.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})

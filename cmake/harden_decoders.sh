@@ -4,15 +4,17 @@
 # LCM's decoders check the lengths in a message too late or only in part, and do not overwrite every
 # part of an object:
 #
-# 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The
-#    check refuses a length below 0 or above the number of bytes left in the message.
+# 1. An array is allocated before its length is checked: a message of 100 bytes can make the decoder
+#    allocate 16 GB. The added check refuses a length below 0 or above the number of bytes left in
+#    the message.
 # 2. A string may lack its terminator, have the length 0 or less, or have a zero byte before its
-#    end. If such a message were encoded again, its bytes would differ. The check refuses all three.
+#    end. If a message with such a string were encoded again, its bytes would differ. The added
+#    check refuses all three cases.
 # 3. If an array of numbers is empty in the message, the decoder does not change the object's array.
 #    Then the object would keep the elements of an earlier message. The array is cleared first.
 #
-# The script fails if it cannot add all these checks. The installed lcm-gen then writes other code
-# than Debian 12's lcm-gen. The script works for any message type.
+# The script fails if it cannot add all these checks. In this case, the installed lcm-gen writes
+# other code than Debian 12's lcm-gen. The script works for any message type.
 set -eu
 
 # count PATTERN FILE: prints how many lines of FILE match PATTERN

@@ -22,7 +22,8 @@ install(DIRECTORY scenario/ DESTINATION share/fogline/scenario COMPONENT fogline
   REGEX "/scenario/(CMakeLists.txt|README.md)$" EXCLUDE)
 include(package/completion)
 
-# include/fogline has the message types, and beside them the headers in folders such as common/.
+# include/fogline contains the headers of the message types. Its subfolders, such as common/,
+# contain all other headers.
 foreach(part IN ITEMS common lcmtypes scenario wire runtime)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
   install(TARGETS fogline_${part} EXPORT fogline-targets ARCHIVE DESTINATION lib COMPONENT dev)

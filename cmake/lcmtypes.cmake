@@ -1,6 +1,7 @@
-# lcm_add_types(TARGET DIR) makes C++ headers from every DIR/*.lcm at build time, as an interface
-# library. Debian's LCM has no CMake package for this task. If a JDK and LCM's jar are installed,
-# TARGET_java makes lib/TARGET.jar, which lcm-spy needs to decode the messages.
+# lcm_add_types(TARGET DIR) adds the interface library TARGET. Its C++ headers are made from every
+# DIR/*.lcm at build time. Debian's LCM has no CMake package for this task. If a JDK and LCM's jar
+# are installed, the target TARGET_java makes lib/TARGET.jar, which lcm-spy needs to decode the
+# messages.
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 function(lcm_add_types target dir)
@@ -60,7 +61,7 @@ function(lcm_add_types target dir)
     message(STATUS "No JDK or lcm.jar: lcm-spy will not decode Fogline's messages")
   endif()
 
-  # On request: cmake --build build --target fogline_lcmtypes_python
+  # Python types are made only on request: cmake --build build --target fogline_lcmtypes_python
   add_custom_target(${target}_python
     COMMAND "${LCM_GEN}" -p --ppath "${out}/python" ${lcm_files}
     COMMENT "Generating Python message types in ${out}/python")

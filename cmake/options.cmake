@@ -17,11 +17,12 @@ set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-Og>)
 # The option for code that mostly waits for the network or the disk.
 set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
 
-# Compiles several source files as one, because the headers take most of the compiler's time. If the
-# option is OFF, a change of one file compiles only that file.
+# If this option is ON, several source files are compiled as one, because the headers take most of
+# the compiler's time. If it is OFF, only a changed file is compiled again.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
 # This option is for tools/mutate, which changes one file of a library at a time. So it is faster to
-# compile the files of a library one by one. tools/mutate changes no file of a test.
+# compile the files of a library one by one. The files of a test are still compiled as one, because
+# tools/mutate changes none of them.
 option(FOGLINE_UNITY_TESTS_ONLY "Compile only tests in this way" OFF)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
 if(FOGLINE_UNITY_TESTS_ONLY)
@@ -29,8 +30,8 @@ if(FOGLINE_UNITY_TESTS_ONLY)
 endif()
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
-# GCC looks for memory that it can reuse (garbage collection) only when it holds this much memory,
-# in KiB. With so large a value, GCC takes a tenth less time.
+# GCC starts its garbage collection only when it has allocated this much memory, in KiB. With a
+# value as large as this one, GCC needs a tenth less time.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=1000000)
 endif()
@@ -59,8 +60,9 @@ if(FOGLINE_WERROR)
   add_compile_options(-Werror)
 endif()
 
-# The counters are atomic, so the counts of all threads are right. Functions are not inlined,
-# because an inlined function has no lines of its own.
+# With this option, the compiler adds counters for the executed lines. The counters are atomic, so
+# the counts are right even if several threads run a line. Functions are not inlined, because an
+# inlined function has no lines of its own.
 option(FOGLINE_COVERAGE "Count the lines that are executed (tools/test --coverage)" OFF)
 if(FOGLINE_COVERAGE)
   add_compile_options(--coverage -fprofile-update=atomic -fno-inline)

@@ -66,8 +66,8 @@ set(CPACK_DEBIAN_FOGLINE_PACKAGE_DEPENDS "${matio_package}")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_RECOMMENDS "liblcm-bin, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SUGGESTS
   "default-jre, fogline-dev, libjchart2d-java, liblcm-java, openssh-client")
-# CPack would write a postinst and a postrm that call ldconfig. This call is of no use, because
-# ldconfig does not search lib/fogline.
+# The package has its own postinst and postrm. Without them, CPack would write scripts that only
+# call ldconfig, and ldconfig does not search lib/fogline.
 foreach(file IN ITEMS conffiles postinst prerm postrm)
   list(APPEND CPACK_DEBIAN_FOGLINE_PACKAGE_CONTROL_EXTRA "${package_files}/fogline/${file}")
 endforeach()

@@ -5,8 +5,8 @@ set(includes "")
 set(hashes "")
 foreach(file IN LISTS LCM_FILES)
   get_filename_component(type "${file}" NAME_WE)
-  # No role sends or receives these types. A role that was built without them can take part in a
-  # run.
+  # The fingerprint does not cover these types, because their messages are not part of a run. So a
+  # role that was built without these types can take part in a run.
   if(type MATCHES "^(beacon|log_graph|log_priority|log_seal|wall_clock)_t$")
     continue()
   endif()

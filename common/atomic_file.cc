@@ -57,8 +57,9 @@ struct Target {
   fs::file_status status;
 };
 
-/// The descriptor to which a name in /proc/self/fd refers. If the file were opened by this name,
-/// writes would begin at byte 0 and overwrite the bytes that the descriptor has written so far.
+/// The descriptor to which a name in /proc/self/fd refers; nullopt for any other name. If the file
+/// were opened by its name in /proc/self/fd, writes would begin at byte 0, and would overwrite the
+/// bytes that were written through the descriptor.
 std::optional<int> DescriptorOf(const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(FolderOf(link), error);
@@ -112,8 +113,8 @@ int MakeNew(const fs::path& file) {
   return open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-/// Creates an empty file in a folder and removes this file again. @throws InputError that names
-/// `result`
+/// Checks that the folder accepts a new file: creates an empty file and removes it again. @throws
+/// InputError that names `result`
 void TryFile(const fs::path& folder, const fs::path& result, std::string_view option) {
   const fs::path file = RandomName(folder);
   const int descriptor = MakeNew(file);
@@ -133,7 +134,7 @@ int Open(const Target& target) {
     }
     return fcntl(*target.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   }
-  // If no process reads the pipe, open() fails with O_NONBLOCK. Without O_NONBLOCK, open() would
+  // With O_NONBLOCK, open() fails if no process reads the pipe. Without O_NONBLOCK, open() would
   // wait for a reader.
   const int fd = open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
@@ -157,7 +158,7 @@ AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
     ThrowCannotWrite(file_, "", error);
   }
   if (device_ < 0) {
-    // A file that replaces another one keeps its permissions.
+    // The new file gets the permissions of the file that it replaces.
     if (fs::is_regular_file(target.status)) {
       fchmod(fd_, static_cast<mode_t>(target.status.permissions()) & 0777);
     }

@@ -20,7 +20,8 @@ namespace fogline {
 /// (interrupt.h). Then only kill -9 leaves a file with a random name, ".fogline-*".
 class AtomicFile {
  public:
-  /// @throws InputError if the file cannot be created, or a folder or block device has its name
+  /// @throws InputError if the file cannot be created, or if a folder or a block device has this
+  ///     name
   explicit AtomicFile(std::filesystem::path file);
   /// Removes the temporary file, if it still exists.
   ~AtomicFile();
@@ -50,9 +51,10 @@ class AtomicFile {
   /// @throws std::runtime_error, Interrupted
   void Finish();
 
-  /// Gives the file its name only if no file has this name. If several processes do so at the same
-  /// time, only one succeeds. The exception is a file system that has no hard links, and also
-  /// cannot rename a file under the condition that the new name is free. @pre !is_stream()
+  /// Gives the file its name only if no file has this name. If several processes call FinishNew()
+  /// for the same name at the same time, only one process succeeds. This is not guaranteed on a
+  /// file system that has neither hard links nor RENAME_NOREPLACE (renameat2(2)).
+  /// @pre !is_stream()
   /// @return false if there is a file of this name, which stays unchanged
   /// @throws std::runtime_error
   bool FinishNew();

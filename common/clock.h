@@ -1,5 +1,6 @@
-// Time of CLOCK_MONOTONIC, a clock that cannot be set. Waits, the repair of lost messages, and runs
-// in real time use this time. No result of a run in lockstep may depend on this time.
+// Time of CLOCK_MONOTONIC, a clock that cannot be set. This time is used for waits, for the repair
+// of lost messages, and for runs in real time. No result of a run in lockstep may depend on this
+// time.
 #pragma once
 
 #include <chrono>

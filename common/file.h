@@ -9,7 +9,7 @@
 namespace fogline {
 
 /// Least number of bytes for one system call. Smaller pieces are collected in a buffer, because a
-/// system call costs as much as copying thousands of bytes.
+/// system call takes as long as copying thousands of bytes.
 inline constexpr std::size_t kWorthACall = 1 << 16;
 
 /// Result of reading a file: its text or an error. `error` is empty after success.

@@ -25,8 +25,8 @@
 namespace fogline {
 namespace {
 
-// If a file is removed or replaced between opening and locking, it is opened again, up to this many
-// times.
+// A file may be removed or replaced after FileLock has opened it and before FileLock locks it. Then
+// FileLock opens the file again, but not more than this number of times in total.
 constexpr int kTries = 10;
 // While another process holds the lock, FileLock tries again at this interval.
 constexpr Duration kTryEvery = milliseconds(10);

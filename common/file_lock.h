@@ -20,7 +20,7 @@ class FileLock {
 
   /// Opens a file or folder and locks it. A file that is missing is created.
   /// @param option the command line option that names the file, such as "--log"
-  /// @param owner what owns such locks, for the error message, such as "run"
+  /// @param owner the kind of owner that the error message names, such as "run"
   /// @param patience longest wait until other processes release their locks
   /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without
   ///     the pid if /proc/locks does not give it. If the file cannot be written, the text says why.

@@ -17,8 +17,9 @@
 
 namespace fogline {
 
-/// The streams of random numbers, one for each purpose. The random numbers depend on the number of
-/// their stream. So never reuse or change the number of a stream.
+/// The streams of random numbers, one for each purpose. The value of an enumerator determines the
+/// random numbers of its stream. So never change a value, and never use a value for a second
+/// purpose.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,
@@ -36,8 +37,8 @@ constexpr Stream FollowerErrors(std::uint32_t car) {
   return static_cast<Stream>(static_cast<std::uint32_t>(Stream::kFollowerErrors) + car);
 }
 
-/// The stream of a role that has no stream in `Stream`. The largest bit of the result is set, so
-/// the result differs from all numbers in `Stream`. @param role name of the role
+/// The stream of a role that has no stream in `Stream`. The most significant bit of the result is
+/// set, so the result differs from all numbers in `Stream`. @param role name of the role
 constexpr Stream StreamOf(std::string_view role) {
   std::uint32_t hash = 2'166'136'261;  // FNV-1a
   for (const char c : role) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619;

@@ -22,8 +22,8 @@ std::string TimeText(double time_s);
 /// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
 
-/// Escapes a text like EscapeControls(), but keeps line feeds. So the meaning of a JSON text does
-/// not change.
+/// Escapes a text like EscapeControls(), but keeps line feeds. So a JSON text keeps its lines and
+/// its meaning.
 std::string EscapeLines(std::string_view text);
 
 /// The name of a file, escaped for a terminal.
@@ -49,7 +49,7 @@ std::string WithUnit(std::string_view text, std::string_view unit);
 std::string Names(std::span<const std::string_view> names);
 
 /// Least number of edits that turn `a` into `b`: insertions, deletions, substitutions and swaps of
-/// neighbours. (The name of this distance is "optimal string alignment". It is the
+/// two neighbouring bytes. (The name of this distance is "optimal string alignment". It is the
 /// Damerau-Levenshtein distance with the condition that no position is edited twice.)
 std::size_t EditDistance(std::string_view a, std::string_view b);
 

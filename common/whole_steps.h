@@ -8,7 +8,7 @@
 
 namespace fogline {
 
-/// Difference from a whole number that counts as rounding, in steps.
+/// Largest difference from a whole number that counts as a rounding error, in steps.
 inline constexpr double kStepRounding = 1e-9;
 
 /// Number of whole steps in a time.

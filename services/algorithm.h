@@ -106,7 +106,8 @@ constexpr bool Writes(Role role, std::type_identity<std::tuple<Out...>>) {
   return exact;
 }
 
-/// Whether kGraph lets a role read these types on demand.
+/// Whether kGraph lets a role read messages of these types as its input on demand (see the top of
+/// this file).
 template <class... In>
 constexpr bool MayReadOnDemand([[maybe_unused]] Role role, std::type_identity<std::tuple<In...>>) {
   return (ChannelOf<In>().on_demand.Has(role) && ...);
@@ -124,18 +125,21 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
-  /// A tuple with the type of the input on demand; an empty tuple if there is no such input.
+  /// A tuple with the type of the input on demand (see the top of this file); an empty tuple if the
+  /// algorithm has no such input.
   using OnDemand = typename internal::OnDemandInputs<A>::Type;
   static constexpr bool kHasOnDemand = std::tuple_size_v<OnDemand> != 0;
-  /// All messages that the algorithm can read; the input on demand comes last.
+  /// The types of all messages that the algorithm can read: first the types of the inputs of Step,
+  /// then the type of the input on demand.
   using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
 
   static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
   /// Whether the role begins the steps. Start() then computes step 0 without inputs. Each later
-  /// step uses the inputs of the previous step.
+  /// step uses messages of the previous step.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
 
-  /// Whether the algorithm reads its input on demand in this scenario.
+  /// Whether the algorithm reads its input on demand in this scenario; false if it has no such
+  /// input.
   static bool UsesOnDemandInput([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kHasOnDemand) {
       return A::UsesOnDemandInput(scenario);
@@ -144,8 +148,8 @@ struct AlgorithmTraits {
     }
   }
 
-  /// Whether a copy of the algorithm shares a part of its state in this scenario. If it does, only
-  /// one of the two objects may continue the run.
+  /// Whether a copy of the algorithm shares a part of its state with the original in this scenario.
+  /// If it does, only one of the two objects may continue the run.
   static bool CopiesShareState([[maybe_unused]] const Scenario& scenario) {
     if constexpr (requires { A::CopiesShareState(scenario); }) {
       return A::CopiesShareState(scenario);
@@ -154,7 +158,7 @@ struct AlgorithmTraits {
     }
   }
 
-  /// Whether the algorithm can read a live input.
+  /// Whether the algorithm can read a live input: the actions of a person.
   static constexpr bool kHasLive = internal::HasLiveInput<A>;
 
   /// Whether the algorithm reads its live input in this scenario.
@@ -173,7 +177,8 @@ struct AlgorithmTraits {
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role; see "
                 "its rows in services/graph.h");
-  // kGraph may allow an input on demand that this algorithm does not have.
+  // The check goes in one direction only: kGraph may allow an input on demand that this algorithm
+  // does not have.
   static_assert(internal::MayReadOnDemand(kRole, std::type_identity<OnDemand>{}),
                 "kGraph does not let this role read the message of SetOnDemandInput on demand");
   static_assert(

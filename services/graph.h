@@ -34,7 +34,7 @@ namespace fogline {
 #define FOGLINE_ROLE_VALUE(folder, Class, purpose) k##Class,
 enum class Role : std::uint8_t {
   FOGLINE_ROLES(FOGLINE_ROLE_VALUE)  // the roles that compute messages
-  kRecorder,                         // writes the log; only kRoles has its row
+  kRecorder,                         // writes the log; its row is only in kRoles
   kRunner,                           // `fogline run`: starts and ends a run, and computes no step
 };
 #undef FOGLINE_ROLE_VALUE
@@ -74,7 +74,7 @@ inline constexpr RoleSet kEveryone = [] {
   return everyone;
 }();
 
-/// How often a channel carries a message.
+/// The pace of a channel says when its producer sends messages.
 enum class Pace : std::uint8_t {
   kStep,     // its producer sends exactly one message in every step
   kControl,  // messages as needed, outside the sequence of steps
@@ -132,9 +132,10 @@ inline constexpr std::tuple kGraph{
                               Role::kDriver,
                               {Role::kArbitrator},
                               "acceleration a_H of the human driver, readiness"},
-    // The closed loop computes runs together as long as their HOST_COMMANDs have the same effect on
-    // the roles. If a role begins to read another field of HOST_COMMAND, ClosedLoop::CommandsAs()
-    // must compare this field, too.
+    // Runs that differ only in their arbitrators share the computation of all other roles
+    // (shared_runs.h). They share it until their HOST_COMMANDs have different effects on these
+    // roles. If you change a role so that it reads another field of HOST_COMMAND, let
+    // ClosedLoop::CommandsAs() compare this field, too.
     Channel<arbitration_t>{"HOST_COMMAND",
                            Pace::kStep,
                            Role::kArbitrator,
@@ -234,9 +235,9 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
   return 0;
 }
 
-/// Whether every role except the world reads only channels of roles that come before it in kRoles.
-/// If this is true, each of these roles uses only messages of its own step. The world begins a
-/// step, and uses messages of the previous step.
+/// Whether each role, except the world, reads only channels whose producers come before this role
+/// in kRoles. If this is true, each of these roles uses only messages of its own step. The world
+/// begins a step, and uses messages of the previous step.
 constexpr bool RolesAreInOrder() {
   for (const ChannelInfo& channel : kChannels) {
     for (const RoleInfo& reader : kRoles) {
@@ -274,7 +275,7 @@ constexpr std::size_t ChannelNamed(std::string_view name) {
   return place;
 }
 
-/// Name of a role, as on the command line and in STATUS.
+/// Name of a role on the command line and in STATUS.
 constexpr std::string_view NameOf(Role role) {
   for (const RoleInfo& info : kRoles) {
     if (info.role == role) return info.name;

@@ -3,8 +3,9 @@
 
 namespace fogline {
 
-/// ln 20, the product of an extinction coefficient and its meteorological optical range. At the
-/// distance of this range, 1/20 (5 %) of a contrast remains (WMO-No. 8; Koschmieder).
+/// ln 20, the product of an extinction coefficient and its meteorological optical range. If an
+/// object is as far away as this range, 1/20 (5 %) of its contrast remains (WMO-No. 8;
+/// Koschmieder).
 inline constexpr double kContrastLog = 2.995732273553991;
 
 /// Extinction coefficient in 1/m of air with this meteorological optical range in m.

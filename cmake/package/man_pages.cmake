@@ -1,5 +1,5 @@
-# Makes a man page of each program and each verb in OUT from its --help, by help2man. `fogline
-# --complete` names the verbs. Needs PROGRAMS, PROGRAM_FOLDER and VERSION.
+# Uses help2man to make a man page from the --help of each program and each verb. Writes the pages
+# into OUT. `fogline --complete` names the verbs. Needs PROGRAMS, PROGRAM_FOLDER and VERSION.
 cmake_policy(VERSION 3.25)
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN)
@@ -32,7 +32,8 @@ endfunction()
 function(verbs output)
   execute_process(COMMAND "${PROGRAM_FOLDER}/fogline" --complete ${ARGN} "" OUTPUT_VARIABLE lines
     COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")  # a ";" in a meaning would split the list
+  # Each line is WORD<tab>MEANING. The meanings are removed, because a ";" would split the list.
+  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")
   string(REGEX MATCHALL "[^\n]+" lines "${lines}")
   set(${output} "${lines}" PARENT_SCOPE)
 endfunction()

@@ -24,7 +24,7 @@ namespace fogline {
 namespace {
 
 // Longest wait for a reader that reads nothing, such as a pager that waits for a key. The wait is
-// limited, because a failed process keeps its log locked until the process ends.
+// limited, because a process that has failed keeps its log locked until the process ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
 /// While an object of this class exists, two signals do not end or stop the process when this
@@ -40,7 +40,7 @@ class WithoutSignals {
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
     sigset_t both = sigpipe_;
-    sigaddset(&both, SIGTTOU);  // the kernel does not send a blocked SIGTTOU to a writer
+    sigaddset(&both, SIGTTOU);  // if SIGTTOU is blocked, the kernel allows the write
     pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
   ~WithoutSignals() {

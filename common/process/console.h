@@ -8,9 +8,9 @@
 
 namespace fogline {
 
-/// Prints a line on stderr while a run is under way. The call does not wait. If a pipe or terminal
-/// has no room, the line is dropped. The next printed line says how many lines are missing. Control
-/// characters other than line feeds are escaped. May be called from any thread.
+/// Prints a line on stderr during a run. The call does not wait. If a pipe or terminal has no room,
+/// the line is dropped. The next printed line says how many lines are missing. Control characters
+/// other than line feeds are escaped. May be called from any thread.
 void Notice(std::string_view line) noexcept;
 
 /// Like Notice(), but for an error or a remark that a person must not miss. The call waits until a

@@ -41,7 +41,8 @@ bool RunBeforeOthers(int priority) {
   for (const pid_t thread : ThreadsOf("self", unreadable)) {
     granted = RunFirst(thread, priority, /*with_its_threads=*/false) && granted;
   }
-  // Locks pages in memory, because a page that the kernel has dropped must be read from the disk.
+  // Locks pages in memory. Otherwise the kernel may drop a page, and a step would have to wait
+  // until this page is read from the disk.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
 }

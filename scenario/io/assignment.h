@@ -17,8 +17,8 @@ class FieldAssignment {
 
   /// Sets the field without a check of its range. ParseScenario() with an override checks the
   /// range.
-  /// @throws InputError if the field cannot have this value, if it is a text or a list, or if the
-  ///     scenario lacks the item of the list
+  /// @throws InputError if the field is a text or a list, if the field cannot have this value, or
+  ///     if the scenario lacks the item of the list
   void Set(Scenario& scenario, double number) const;
   /// Sets the field to a value that is written as a text, such as 0.5, true or traded.
   void Set(Scenario& scenario, std::string_view text) const;

@@ -145,8 +145,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
     // `position` is one after the byte at which the parser stopped. The mistake is reported at the
-    // start of the token. In a string it is reported where the parser stopped, because a string may
-    // be long.
+    // start of the token. But a mistake in a string is reported at the byte at which the parser
+    // stopped, because a string may be long.
     const std::string detail = EscapeControls(SyntaxDetail(error.what()));
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
     const std::size_t offset =

@@ -57,7 +57,8 @@ std::string JoinPointer(std::string_view base, std::string_view key);
 /// of text, 32 levels, two million values. Scenarios stay far below these limits. Because of the
 /// limits a hostile text does not overflow the stack. After a mistake of syntax or size, the
 /// function reports this mistake and returns nothing. The function also reports each duplicate key,
-/// but still returns the tree. `base` is the pointer of the root.
+/// but still returns the tree.
+/// @param base the JSON pointer of the root; the JSON pointers in `mistakes` begin with it
 std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
                                    DiagnosticList& mistakes, std::string_view base = "");
 

@@ -17,7 +17,8 @@
 namespace fogline {
 namespace {
 
-// A scenario, the tree from which it was read, and the sources to which places in the tree refer.
+// A scenario, and the tree of JSON values from which it was read. Each place in this tree (Place)
+// has the index of its source in `sources`.
 struct Document {
   Scenario scenario;
   JsonValue root;

@@ -57,8 +57,9 @@ Scenario ParseScenario(std::string_view text, std::string_view name = "scenario"
 /// @pre every value of `scenario` is within the range of its field
 std::string PrintScenario(const Scenario& scenario);
 
-/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. Of the JSON
-/// documents without duplicate keys, the schema accepts exactly those that ParseScenario() accepts.
+/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. For JSON
+/// documents without duplicate keys, the schema and ParseScenario() agree: both accept a document,
+/// or both refuse it.
 std::string ScenarioSchema();
 
 /// JSON schema (draft-07) of the files of experiments with people (sections/plans/experiment.h).
@@ -69,7 +70,7 @@ std::string LabSchema();
 
 /// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"
 /// or "" is the whole scenario; an item of a list is /published/0 or /published/*.
-/// @throws InputError (no such field)
+/// @throws InputError if there is no such field
 std::string ExplainField(std::string_view pointer);
 
 }  // namespace fogline

@@ -1,6 +1,7 @@
 // The types with which a scenario chooses its policy and its measures of conflict. decision.h has
-// the lists of their values. An extension replaces these lists, so only the few files that need a
-// list include decision.h. All other files see only the types.
+// the lists of their values. A program with more policies or measures replaces decision.h, and each
+// library file that includes decision.h (tests/integration/extension). So only the few files that
+// need a list include decision.h. All other files include only the types.
 #pragma once
 
 #include <cstdint>

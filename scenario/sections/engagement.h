@@ -102,10 +102,13 @@ struct TransferSection {
   bool operator==(const TransferSection&) const = default;
 };
 
-/// Policy adaptive: a threshold that depends on the situation,
-/// clip(threshold + readiness_gain (1 - A) - visibility_gain_m / MOR - closing_gain_s max(0, 1/TTC
-/// of the follower) - braking_gain_s2pm max(0, host's braking), least, most). A is the driver's
-/// readiness, MOR the visibility, and TTC the time to collision.
+/// Policy adaptive: like traded, but the threshold depends on the situation:
+///
+///     clip(threshold + readiness_gain (1 - A) - visibility_gain_m / MOR
+///          - closing_gain_s max(0, 1/TTC of the follower)
+///          - braking_gain_s2pm max(0, host's braking), least, most)
+///
+/// A is the driver's readiness, MOR the visibility, and TTC the time to collision.
 struct AdaptiveSection {
   FOGLINE_FIELD(double, readiness_gain, 0.4, {0, 10},
                 "Increase of the threshold for a driver without readiness.",

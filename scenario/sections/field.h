@@ -54,8 +54,9 @@ struct ListSpec {
 /// characters (C0, DEL, C1), so it can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// Says when a file must have a section: if the field `choice` beside the section has the value
-/// `value`. At least one of the section's `fields` (texts or lists) must then not be empty.
+/// The condition under which a file must have a section: the field `choice`, in the same JSON
+/// object as the section, has the value `value`. In this case, at least one of the section's
+/// `fields` (texts or lists) must not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;

@@ -1,6 +1,6 @@
-// The section of a scenario for a person who drives the host in place of the model of a driver: the
-// map from pedals to an acceleration, the time without input after which the person counts as gone
-// (deadman_s), and how the person takes over.
+// The section of a scenario for a person who drives the host in place of the model of a driver. Its
+// fields describe the map from pedals to an acceleration, the time without input after which the
+// person counts as gone (deadman_s), and how the person takes over.
 #pragma once
 
 #include <array>

@@ -9,18 +9,18 @@
 
 namespace fogline::acc {
 
-/// The algorithm of the role `acc`. It offers the automation's acceleration a_A in every step, also
-/// while the human drives. It uses the host's own odometry and the track of the preceding car,
-/// never the truth. It does not decide which side drives. It does not use a track whose distance
-/// has a standard deviation above acc.max_track_std_m. A track becomes so uncertain if the sensors
-/// give no values.
+/// The algorithm of the role `acc`. The ACC offers the automation's acceleration a_A in every step,
+/// even while the human drives. The ACC uses the host's own odometry and the track of the preceding
+/// car, never the truth. The ACC does not decide which side drives. The ACC does not use a track if
+/// the standard deviation of its distance is above acc.max_track_std_m. If the sensors give no
+/// values for some time, the standard deviation grows above this limit.
 class Acc {
  public:
   /// @throws InputError if the weights of scenario.acc make an ill-conditioned problem.
   explicit Acc(const Scenario& scenario);
 
-  /// Resets the object to the state of a new Acc(scenario). Restart() is cheaper than a new object
-  /// if the ACC's parameters are unchanged.
+  /// Resets the object to the state of a new Acc(scenario). If the ACC's parameters are unchanged,
+  /// Restart() is cheaper than a new object.
   void Restart(const Scenario& scenario);
 
   const accel_command_t& Step(const ego_t& ego, const track_t& track);

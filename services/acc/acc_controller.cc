@@ -10,8 +10,8 @@ namespace fogline::acc {
 namespace {
 
 // Tolerance in m/s2. A car has followed its command if acceleration and command differ by at most
-// this tolerance. The tolerance is far above the rounding of an integration over substeps, and far
-// below any difference that a person notices.
+// this tolerance. The tolerance is far above the rounding errors of the integration over substeps,
+// and far below any difference that a person notices.
 constexpr double kSameAcceleration = 1e-6;
 
 QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
@@ -92,13 +92,13 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
 
 // The value of u before this step, from which the rate limit of u starts. If the car followed its
 // command, this value is the u of the controller's last step. Otherwise the value is the u that
-// would keep the car's acceleration. The value is clamped to the limits of u, because the driver
-// may brake harder than the automation may.
+// would keep the car's acceleration. The value is clamped to the limits of u, because a human
+// driver may have braked harder than the automation may.
 //
 // A longitudinal vehicle never follows its command exactly. For such a vehicle, the value is the u
-// of the last step, but limited: its distance from the u that would keep the acceleration is at
-// most T_e jerk_max / K_e. While u changes at the jerk limit, the model's engine lags behind u by
-// this distance. Because of this limit, u cannot drift away while the human drives.
+// of the last step, but its distance from the u that would keep the acceleration is limited to
+// T_e jerk_max / K_e. The model's engine lags behind u by this distance while u changes at the jerk
+// limit. Because of the limited distance, u cannot drift away while the human drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;
   double control = holding;

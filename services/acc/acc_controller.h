@@ -17,21 +17,21 @@ namespace fogline::acc {
 
 /// Model predictive adaptive cruise control: keeps the safe distance d_r = T_hw v + d_0 to the
 /// preceding car (symbols: acc_model.h). The inputs are distance, speeds and acceleration. The
-/// controller uses no sensors, no messages and no authority.
+/// controller has no access to sensors or messages, and does not know which side drives.
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed only in the
-/// constructor. If the plan of this gain meets every limit, the controller uses this plan.
+/// constructor. If the plan that this gain gives meets every limit, the controller uses this plan.
 /// Otherwise the controller solves the quadratic program.
 ///
-/// A point mass applies a command without delay, so its command is the model's acceleration one
-/// step ahead. The command starts from the car's actual acceleration, so the command is continuous
-/// after a take-over.
+/// A point mass applies a command without delay. So the command for a point mass is the model's
+/// acceleration one step ahead. The model starts from the car's actual acceleration, so the command
+/// does not jump after a take-over.
 ///
-/// A longitudinal vehicle has its own lag, in place of the model's lag. The command of this vehicle
-/// is -K_e u, the steady acceleration that the control u causes. Before each step, the difference
-/// between the last command and the vehicle's acceleration is limited to T_e max_jerk_mps3. The
-/// reason for this value: while a command changes at the jerk limit, the acceleration of the
-/// model's engine lags behind the command by T_e max_jerk_mps3.
+/// A longitudinal vehicle itself delays a command, so its command does not contain the lag of the
+/// model. The command is -K_e u, the steady acceleration that the control u causes. Before each
+/// step, the controller limits the difference between the last command and the vehicle's
+/// acceleration to T_e max_jerk_mps3. The reason for this limit: while a command changes at the
+/// jerk limit, the acceleration of the model's engine is behind the command by T_e max_jerk_mps3.
 class AccController {
  public:
   struct Input {
@@ -42,7 +42,7 @@ class AccController {
     bool has_target;            // whether distance_m and relative_speed_mps are valid
   };
 
-  /// How a command was computed; accel_command_t uses the same numbers.
+  /// The way in which a command was computed; accel_command_t uses the same numbers.
   enum class Solver : std::int8_t {
     kUnconstrained = 0,  // the precomputed optimum, within all limits
     kActiveSet = 1,      // the optimum on the limits
@@ -71,9 +71,9 @@ class AccController {
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
 
-  /// The plan u_0, ..., u_{N-1} of the last step, if its solver was kUnconstrained or kActiveSet;
-  /// after kFallback the result has no meaning. If Step() did not need the whole plan, plan()
-  /// computes it.
+  /// The plan u_0, ..., u_{N-1} of the last step, if the solver of this step was kUnconstrained or
+  /// kActiveSet. After kFallback the result has no meaning. If Step() did not need the whole plan,
+  /// plan() computes the plan.
   std::span<const double> plan();
 
  private:

@@ -13,8 +13,8 @@ using Eigen::Index;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// The slack is the first unknown. If it were the last one, the nonzero part of each row with a
-// slack would extend to the end of the row, and the solver would use this whole part.
+// The slack is the first unknown. If the slack were the last unknown, each row with a slack would
+// have a nonzero last element. The solver would then use the whole row, including its zeros.
 constexpr Index kSlack = 0;
 constexpr Index kFirstControl = 1;
 
@@ -133,7 +133,7 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
   const Reach reach = ReachOf(now);
   const double settled = SettledSpeed(now);
   const double preceding_mps = now.speed_mps + now.state(kDeltaV);
-  double previous = now.previous_control;  // u_{-1} for step 0; for later steps, C has u_{j-1}
+  double previous = now.previous_control;  // u_{-1} for step 0; then 0, because C has u_{j-1}
   double control = now.previous_control;   // u of the fall-back plan
   double fallback = settled;
   Eigen::Vector3d free = now.state;  // the state if every u were 0
@@ -159,9 +159,9 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
 }
 
 bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double> controls) const {
-  // The sign bit of a difference shows on which side of a limit a value is. The compiler vectorises
-  // these loops. It would not vectorise comparisons, because comparisons can raise floating-point
-  // flags.
+  // The sign bit of a difference shows on which side of a limit a value lies. The compiler
+  // vectorises these loops. It would not vectorise comparisons, because comparisons can raise
+  // floating-point flags.
   const auto bits = [](double difference) { return std::bit_cast<std::int64_t>(difference); };
   const double lowest = min_control_ - kTolerance;
   const double highest = max_control_ + kTolerance;

@@ -34,24 +34,25 @@ struct AccSituation {
 /// (acc_model.h). The weights w_d to w_s, and a_min, a_max, jerk_max, v_max and d_min, are fields
 /// of AccSection. d_j is the gap, and v_j the own speed, after j steps.
 ///
-/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; its time derivative
-/// is w' = -K_e u. Because T_e v' = w - v, the speed stays below v_max while w stays below v_max,
-/// also between the steps. In the same way, the speed stays at or above 0 while w stays at or above
-/// 0. (Limits on v_j itself would be less cautious. But u acts on v with a delay, so with such
-/// limits the optimum would oscillate from step to step.)
+/// w = v + T_e a is the speed at which the car settles if u is 0 from now on. The time derivative
+/// of w is w' = -K_e u. T_e v' = w - v, so the speed stays below v_max while w stays below v_max,
+/// even between the steps. In the same way, the speed stays at or above 0 while w stays at or above
+/// 0. (Limits on v_j itself would be less cautious. But u acts on v with a delay, so limits on v_j
+/// would make the optimum oscillate from step to step.)
 ///
-/// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
-/// allow it) at the fastest allowed change of u. The fall-back plan meets the first three limits in
-/// every situation. s >= 0 can grow until the last two limits are met, so the program always has a
-/// solution. If the human drove faster than v_max, the car comes back below v_max no later than
-/// with the fall-back plan. s, in m, is the shortfall of the gap that the plan allows in its first
-/// step. The allowed shortfall decreases towards the end of the horizon. Otherwise a gap that is
-/// too small at the start could stay too small. The program needs no limit s >= 0, because s < 0 is
-/// never cheaper than 0.
+/// In the fall-back plan, u changes at the fastest allowed rate until it has the smaller of two
+/// values: fallback_deceleration_mps2 / K_e, and the upper limit of u. The fall-back plan meets the
+/// first three limits in every situation. s >= 0 can grow until the last two limits are met, so the
+/// program always has a solution. If the human has driven faster than v_max, the car comes below
+/// v_max at least as early as with the fall-back plan. s, in m, is the shortfall of the gap that
+/// the plan allows in its first step. The allowed shortfall decreases towards the end of the
+/// horizon. Without this decrease, a gap that is too small at the start could stay too small. The
+/// program needs no limit s >= 0, because s < 0 never costs less than s = 0.
 class AccProgram {
  public:
   /// Tolerance (m/s2, m/s or m). A limit that is violated by at most this tolerance counts as met.
-  /// The tolerance is far above rounding, and far below any difference that a car can make.
+  /// The tolerance is far above rounding errors, and far below any difference that matters for a
+  /// car.
   static constexpr double kTolerance = 1e-10;
 
   AccProgram(const AccSection& section, double step_s);
@@ -68,7 +69,8 @@ class AccProgram {
   /// Matrix C of the limits, 5N x (N+1): five rows for each step.
   const Eigen::MatrixXd& constraints() const { return constraints_; }
 
-  /// Limits of C z. Limits of speed or gap that no plan can reach within the horizon are infinite.
+  /// Limits of C z. If no plan within the limits of u can reach a limit of the speed within the
+  /// horizon, both limits of the speed are infinite. The same rule applies to the limit of the gap.
   void Limits(const AccSituation& now, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
 
   /// Whether a plan u_0, ..., u_{N-1} meets every limit with s = 0.
@@ -76,7 +78,7 @@ class AccProgram {
 
   /// Whether the bounds of a plan prove that IsWithinLimits() is true for this plan. If the result
   /// is false, IsWithinLimits() may still be true. If the result is true, rounding cannot make
-  /// IsWithinLimits() false, because rounding is far below kTolerance.
+  /// IsWithinLimits() false, because rounding errors are far below kTolerance.
   /// @param largest_control upper bound of every |u_j| of the plan
   /// @param largest_change upper bound of every |u_j - u_{j-1}|, with u_{-1} = now.previous_control
   bool IsCertainlyWithinLimits(const AccSituation& now, double largest_control,
@@ -89,8 +91,8 @@ class AccProgram {
   double FallbackControl(double previous_control) const;
 
  private:
-  // Whether a plan within the limits of u can reach the limits of the speed (`speed`), and whether
-  // it can reach the limit of the gap (`gap`).
+  // Whether a plan within the limits of u can reach a limit of the speed (`speed`), and whether it
+  // can reach the limit of the gap (`gap`).
   struct Reach {
     bool speed;
     bool gap;

@@ -7,10 +7,10 @@
 
 namespace fogline::acc {
 
-/// The optimum without limits. It is linear in the situation p = [x(k); u_{-1}], the state and the
-/// control of the previous step: u = K p. If the whole plan meets the limits, a controller needs
-/// only u_0. The two bounds below often prove that the plan meets the limits. Computing them takes
-/// far less time than computing the plan. By the triangle inequality,
+/// The optimum without limits. It is linear in the situation p = [x(k); u_{-1}]: u = K p. x(k) is
+/// the present state, and u_{-1} is the control of the previous step. If the whole plan meets the
+/// limits, a controller needs only u_0. The two bounds below often prove that the plan meets the
+/// limits. The bounds take far less computing time than the plan. By the triangle inequality,
 ///
 ///     |u_j|           <= sum_i max_j |K_ji| |p_i|
 ///     |u_j - u_{j-1}| <= sum_i max_j |K_ji - K_{j-1,i}| |p_i|,    where u_{-1} = p_4

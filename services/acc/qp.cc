@@ -88,12 +88,13 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// This function is step 0 of the method of Goldfarb & Idnani (qp.h), but it starts from the last
-// active set instead of an empty set. The function finds the minimum at which the limits of this
-// set are equalities. The function drops limits with negative multipliers. Let N = Q R be the
-// normals of the limits, b the values of the limits, y = L'x, and y0 the y of the unconstrained
-// minimum. Then y = y0 + Q t with R't = b - N'y0, and the multipliers are the lambda with
-// R lambda = t.
+// This function is step 0 of the method of Goldfarb & Idnani (qp.h). But the function starts from
+// the last active set, not from an empty set. The function drops limits that are infinite in this
+// call. Then it finds the minimum at which the limits of the set are equalities. While a multiplier
+// is negative, the function drops the limit with the smallest multiplier, and computes the minimum
+// again. L is the Cholesky factor of the Hessian (qp.h), and y = L'x. Let N = Q R be the normals of
+// the limits, b the values of the limits, and y0 the value of y at the unconstrained minimum. Then
+// y = y0 + Q t with R't = b - N'y0, and the multipliers are the lambda with R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;
@@ -129,8 +130,8 @@ double QpSolver::Value(Index row) const {
   return rows_.col(row).segment(span.begin, span.size).dot(x_.segment(span.begin, span.size));
 }
 
-// Returns the limit that is violated most (step 1 of the method); `violation` is 0 if no limit is
-// violated by more than the tolerance.
+// Returns the limit that is violated most (step 1 of the method). If no limit is violated by more
+// than the tolerance, `violation` is 0.
 QpSolver::Limit QpSolver::MostViolated(const Eigen::VectorXd& lower,
                                        const Eigen::VectorXd& upper) const {
   Limit worst{.row = 0, .side = 1, .violation = 0};
@@ -147,8 +148,8 @@ QpSolver::Limit QpSolver::MostViolated(const Eigen::VectorXd& lower,
   return worst;
 }
 
-// Step 2 of the method: a step towards `limit`, which ends where a multiplier would become
-// negative.
+// Step 2 of the method: a step towards `limit`. The step ends at `limit`, or earlier, where the
+// multiplier of an active limit would become negative.
 QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
   const double norm = SplitNormal(limit);
   auto fall = dual_direction_.head(active_);
@@ -163,7 +164,8 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
       blocking = i;
     }
   }
-  // Step size at which `limit` is met; infinite if its normal depends on the active normals.
+  // Step size at which `limit` is met. It is infinite if the normal of `limit` is linearly
+  // dependent on the active normals.
   const double primal_step = norm > 0 ? limit.violation / (norm * norm) : kInfinity;
   const double step = primal_step < dual_step ? primal_step : dual_step;
   if (step == kInfinity) return StepKind::kInfeasible;
@@ -195,8 +197,8 @@ double QpSolver::SplitNormal(const Limit& limit) {
   const double whole = rest_.norm();
   along.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * along;
-  // The first pass leaves a rounding error relative to the whole normal, and rest_ may be smaller
-  // than this error. A second pass is enough.
+  // The rounding error of the first pass is proportional to the whole normal, and rest_ may be
+  // smaller than this error. A second pass is sufficient to remove the error.
   correction.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * correction;
   along += correction;

@@ -1,6 +1,6 @@
-// A small dense solver for strictly convex quadratic programs that differ only in their linear term
-// and limits. The solver is not suitable for problems with many hundreds of variables or without
-// curvature.
+// A small dense solver for strictly convex quadratic programs. One object solves many programs that
+// differ only in their linear term and limits. The solver is not suitable for programs with many
+// hundreds of variables, or for programs that are not strictly convex.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,19 @@ namespace fogline::acc {
 /// that block a step. The method needs no feasible start. It needs few iterations if few limits are
 /// active.
 ///
-/// With the Cholesky factor H = L L', the normal of a limit is the column L^-1 c. The active
-/// normals are stored as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
-/// with reorthogonalisation and Givens rotations: J. W. Daniel, W. B. Gragg, L. Kaufman and
-/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2). An
-/// iteration uses only the part of a row of C between its outermost nonzeros.
+/// H = L L' is the Cholesky factorisation. The normal of a limit is the column L^-1 c, where c' is
+/// the row of C. The active normals are stored as a thin QR factorisation that grows and shrinks by
+/// one column (Gram-Schmidt with reorthogonalisation and Givens rotations: J. W. Daniel,
+/// W. B. Gragg, L. Kaufman and G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An
+/// iteration costs O(n^2). An iteration uses only the part of a row of C between its outermost
+/// nonzeros.
 ///
-/// The factors depend only on H and C. So every call except the first starts from the active set of
-/// the previous call. If the problems belong to successive steps, this set is nearly the new active
-/// set. Every start gives the same minimum, apart from rounding. Equal sequences of calls give
-/// bitwise equal results.
+/// The factorisations depend only on H and C. So every call except the first call starts from the
+/// active set of the previous call. If the problems belong to successive steps, this set is nearly
+/// the new active set. The result is the same minimum for every start, apart from rounding. Equal
+/// sequences of calls give bitwise equal results.
 ///
-/// Only the constructor allocates memory.
+/// Solve() allocates no memory.
 class QpSolver {
  public:
   enum class Status : std::uint8_t {

@@ -10,7 +10,7 @@ namespace fogline::arbitrator {
 namespace {
 
 /// Checks a scenario without requests to the driver. @throws InputError if the person may override
-/// or may come back, because both need requests
+/// or may come back: both options need requests
 void RequireNoAnswers(const PersonSection& person) {
   constexpr const char* kNeeds = " needs /arbitrator/take_over/mode \"requested\"";
   if (person.override_by != OverrideBy::kNone) {
@@ -75,7 +75,8 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.threshold = request.threshold;
   const double wanted = debouncer_.Step(request, out_.doc, !recovery_ || recovery_->recovered());
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
-  // The paper's driver is always ready, and so gets the wanted authority without a request.
+  // Without requests (no take_over_), the driver is always ready, as in the paper. So this driver
+  // gets the wanted authority without an answer. With requests, Ask() sets granted_ again.
   granted_ = wanted;
   if (take_over_ && !Ask(wanted, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
@@ -134,8 +135,8 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     const bool shared =
         shares_ && automation_there_ && !take_over_->manoeuvred() && !take_over_->overridden();
     granted_ = shared ? wanted : 1;
-    // During a transfer from the automation to the driver, the limit of the automation's
-    // acceleration falls to 0.
+    // During a transfer from the automation to the driver, the upper limit of the automation's
+    // acceleration falls to 0 step by step.
     eased_mps2_ = std::max(0.0, eased_mps2_ - easing_per_step_);
     if (!shared) offers.automation_mps2 = std::min(offers.automation_mps2, eased_mps2_);
   } else {
@@ -143,8 +144,8 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     offers.automation_mps2 = asked.acceleration_mps2;
     eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
-  // A driver who overrides has the whole authority from this step on. The same holds for a driver
-  // who ends a minimal risk manoeuvre, because the automation is then off.
+  // A driver who overrides has the whole authority from this step on. A driver who ends a minimal
+  // risk manoeuvre also has the whole authority, because the automation is then off.
   if (manoeuvre_ran || take_over_->overridden()) {
     transfer_.Overrule(
         {.lambda_human = 1, .acceleration_mps2 = sent_mps2_.value_or(ego.acceleration_mps2)});

@@ -27,9 +27,9 @@
 
 namespace fogline::arbitrator {
 
-/// The algorithm of the role `arbitrator`. With the defaults of the scenario, it is the traded
-/// control of Sourav & Cheng 2024, which weights the accelerations a_A of the automation and a_H of
-/// the human:
+/// The algorithm of the role `arbitrator`. With the defaults of the scenario, the arbitrator does
+/// the traded control of Sourav & Cheng 2024. Traded control weights the accelerations a_A of the
+/// automation and a_H of the human:
 ///
 ///     lambda_A = 1 if 0 <= DoC < threshold, else 0        lambda_H = 1 - lambda_A
 ///     a = lambda_H a_H + lambda_A a_A
@@ -37,11 +37,11 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings. If it does, SetOnDemandInput() is called
-  /// before every Step().
+  /// Whether the scenario's policy uses the surroundings. If the policy uses them,
+  /// SetOnDemandInput() is called before every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
-  /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
-  /// meter would give.
+  /// Takes values from the truth of this step: only those that a perfect rear sensor and a
+  /// visibility meter would give.
   void SetOnDemandInput(const truth_t& truth);
 
   /// Returns the host's command for the step of `ego`. Call Step() once per step, in the order of
@@ -60,14 +60,14 @@ class Arbitrator {
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
 
-  /// Applies emergency braking, which may replace acceleration and mode of the command, also while
-  /// the human drives. The mode of a manoeuvre stays unchanged. Call Guard() once per decision,
-  /// after Choose(). Step() calls Guard() itself.
+  /// Applies emergency braking, even while the human drives. Emergency braking may replace
+  /// acceleration and mode of the command. It does not replace the mode of a minimal risk
+  /// manoeuvre. Call Guard() once per decision, after Choose(). Step() calls Guard() itself.
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
-  /// Whether the last decision wants the human to drive, also while the transfer is still in
-  /// progress. If the driver must be asked: whether the driver has taken over, and should have at
-  /// least half of the authority at the end of the transfer.
+  /// Whether the human should have at least half of the authority at the end of the present
+  /// transfer, according to the last decision. If the driver must be asked, the result is true only
+  /// after the driver has taken over.
   bool wants_human() const { return granted_ >= kMainAuthority; }
   /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {
@@ -82,8 +82,8 @@ class Arbitrator {
   /// Sets whether the automation is available. Only an available automation gets authority back
   /// from a driver who was asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }
-  /// Tells the arbitrator the command that was sent, if it is not the command of the last decision.
-  /// The next command then continues from the command that was sent.
+  /// Tells the arbitrator which command was sent. Call Overrule() if the command of the last
+  /// decision was not sent. The next command then continues from the command that was sent.
   void Overrule(const arbitration_t& sent);
 
  private:
@@ -92,9 +92,9 @@ class Arbitrator {
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,
                                          const driver_command_t& driver);
-  /// For a driver who must be asked: passes the engagement request to TakeOver. Then sets granted_
-  /// and the automation's offer, or sets the command of a minimal risk manoeuvre. @return false if
-  /// the host is in such a manoeuvre
+  /// Passes the engagement request to TakeOver; only for a driver who must be asked. Then sets
+  /// granted_ and the automation's offer, or, in a minimal risk manoeuvre, sets the command.
+  /// @return false if the host is in a minimal risk manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 
@@ -109,7 +109,7 @@ class Arbitrator {
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only for a driver who must be asked
   std::optional<models::Aeb> aeb_;                // only for a host that has emergency braking
-  double max_track_variance_m2_;                  // largest variance that emergency braking accepts
+  double max_track_variance_m2_;                  // limit for a track that emergency braking uses
   double easing_per_step_;                        // m/s2; decrease of eased_mps2_ per step
   double eased_mps2_ = 0;                         // limit of the automation's offer after a request
   bool automation_there_ = true;

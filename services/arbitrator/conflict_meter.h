@@ -15,15 +15,15 @@ namespace fogline::arbitrator {
 /// DoC = 1/(1 + exp(-slope (x - centre))). x depends on the scenario's measure. With measure `doc`,
 /// x is the windowed conflict z of the paper (services/decision/conflict/over_time/doc.h). With
 /// another measure, x is the measure's score (services/decision/conflict/conflict_measures.cc). If
-/// measure_scale is `probability`, the DoC is not this function of x, but the score itself.
+/// measure_scale is `probability`, this formula does not apply: the DoC is the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is `probability`, but the measure's score is not a
   /// probability
   explicit ConflictMeter(const Scenario& scenario);
 
-  /// Adds the values of a step. `track` gives the range that the filter has predicted, for measures
-  /// that compare the sensors with this prediction. `track` is used only if it belongs to the same
+  /// Adds the values of a step. Some measures compare the sensors with the range that the filter
+  /// has predicted; `track` gives this prediction. `track` is used only if it belongs to the same
   /// step as `radar`.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     conflict::Evidence evidence{
@@ -35,9 +35,10 @@ class ConflictMeter {
     score_ = measure_->Step(evidence);
   }
 
-  /// Conflict after the last observed step: z in m, or the score in the measure's own unit.
+  /// Conflict after the last observed step. With measure `doc` it is z, in m. With another measure
+  /// it is the score, in the measure's own unit.
   double conflict() const { return measure_ ? score_ : doc_.conflict_m(); }
-  /// DoC that belongs to a value of conflict().
+  /// The DoC for this value of conflict().
   double DocOf(double conflict) const {
     if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
     return conflict::DegreeOfConflict(conflict, slope_, centre_);

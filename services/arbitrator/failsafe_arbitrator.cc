@@ -7,10 +7,10 @@
 namespace fogline::arbitrator {
 namespace {
 
-// Availability of the automation: the worst of five availabilities. These belong to its command, to
-// the track from which the command is computed, to radar, to LiDAR, and to the pairs of radar and
-// LiDAR values of one step. Without pairs there is no Degree of Conflict, so the arbitrator cannot
-// judge the automation.
+// Availability of the automation: the worst availability of five inputs. These inputs are the
+// automation's command, the track from which the command is computed, radar, LiDAR, and the pairs
+// of radar and LiDAR values of the same step. Without pairs there is no Degree of Conflict, so the
+// arbitrator cannot judge the automation.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
@@ -56,7 +56,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
     case Decision::kRegular:
       break;
     case Decision::kAutomation:
-      if (arbitrator_.asks()) break;  // here the regular decision does not need the driver
+      if (arbitrator_.asks()) break;  // the regular command then needs no driver
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
@@ -77,8 +77,10 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision, from the pairs so far. A missing acceleration counts as 0. Judge() ensures
-// that a command with a missing acceleration is not sent.
+// Makes the regular decision, from the pairs of radar and LiDAR values so far. A missing
+// acceleration counts as 0. If the command depends on a missing acceleration, Judge() chooses
+// another decision, so this command is not sent. An exception is a manoeuvre of TakeOver: the
+// manoeuvre uses 0 in place of the missing acceleration of the automation.
 void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automation) {
   arbitrator_.SetAutomationThere(automation != kGone);
   out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track),
@@ -87,7 +89,7 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
 
 // Availability of the human. A person may be gone although the driver's process sends its messages:
 // the seat is empty or silent. The readiness is then 0. At the start of the run, the first input of
-// the person may not have come yet, so the result is kNotYet until person_due_step_.
+// the person may still be missing, so the result is kNotYet until person_due_step_.
 Offer FailsafeArbitrator::HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const {
   const Offer offer = OfferOf(inputs.driver.state);
   const bool absent = person_ && offer == kThere && inputs.driver.newest->readiness <= 0;

@@ -1,6 +1,6 @@
-// The arbitrator in real time: it decides in every step with the available inputs. If all inputs
-// are available, its result equals the result of Arbitrator, bit by bit. If inputs are missing, the
-// table of failsafe_table.h decides.
+// The arbitrator in real time. It decides in every step, with the inputs that are available. If all
+// inputs are available, the result equals the result of Arbitrator, bit by bit. If inputs are
+// missing, the table of failsafe_table.h decides.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,8 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// See Arbitrator. If SetOnDemandInput() is not called, the last values apply.
+  /// These functions do the same as the functions of Arbitrator with the same names. If
+  /// SetOnDemandInput() is not called before a step, the last values apply.
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return Arbitrator::UsesOnDemandInput(scenario);
   }
@@ -40,7 +41,7 @@ class FailsafeArbitrator {
   /// Returns the host's command for the step of `header`. Call Step() once per decision; steps may
   /// be skipped. The result is valid until the next call. In the minimal risk manoeuvre that this
   /// class begins, `mode` is MINIMAL_RISK and both authorities are 0. The conflict is computed from
-  /// the last pairs of sensor values, even if these are old.
+  /// the last pairs of sensor values, even if these pairs are old.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
   /// Starts the minimal risk manoeuvre at the next step, independently of the inputs. Call
@@ -48,11 +49,11 @@ class FailsafeArbitrator {
   /// manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
-  /// Text about the fallback that replaces the arbitrator's regular decision; "" if there is no
-  /// fallback.
+  /// Text that describes the fallback (the decision that replaces the regular decision); "" if
+  /// there is no fallback.
   std::string_view fallback() const { return FallbackText(decision_); }
-  /// status_t::HOST if the host is in a minimal risk manoeuvre that lasts until the end of the run,
-  /// or stands until the end of the run after a manoeuvre; otherwise 0.
+  /// status_t::HOST in two cases: the host is in a minimal risk manoeuvre that lasts until the end
+  /// of the run, or the host stands after a manoeuvre until the end of the run. Otherwise 0.
   std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
   /// The decision of the last step.
   Decision decision() const { return decision_; }

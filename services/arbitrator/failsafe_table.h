@@ -1,5 +1,5 @@
-// The rule that decides which side drives the host when inputs of the arbitrator have failed, as
-// one table.
+// Table of the rule that decides which side drives the host if inputs of the arbitrator have
+// failed.
 #pragma once
 
 #include <algorithm>
@@ -24,12 +24,13 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// The regular decision: whether it wants the automation (kCalm) or the human (kDisputed) to drive.
-/// The values are bits, so that a row of the table can name both (kAnyConflict).
+/// The side that should drive according to the regular decision: the automation (kCalm) or the
+/// human (kDisputed). The values are bits, so that a row of the table can name both values
+/// (kAnyConflict).
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {
-  kRegular,      // both can drive: the decision as in lockstep
+  kRegular,      // both sides can drive: the decision is as in lockstep
   kAutomation,   // the human cannot drive, and there is no conflict
   kHuman,        // the automation cannot drive
   kHold,         // an input has not arrived yet, so the last command is repeated
@@ -91,8 +92,8 @@ static_assert(
     }(),
     "exactly one row of kFailsafeTable applies to each case");
 
-/// Text for STATUS about the fallback that replaces the arbitrator's regular decision; "" if there
-/// is no fallback.
+/// Text for STATUS that describes the fallback (the decision that replaces the regular decision);
+/// "" if there is no fallback.
 constexpr std::string_view FallbackText(Decision decision) {
   switch (decision) {
     case Decision::kRegular:

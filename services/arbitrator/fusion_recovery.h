@@ -8,11 +8,12 @@
 
 namespace fogline::arbitrator {
 
-/// Compares the track with the sensors, because the Degree of Conflict compares only the sensors
-/// with each other, over a window of less than a second. The filter has a longer memory. So when
-/// the sensors agree again, the filter's track may still be metres away from both sensors. Let d be
-/// the track's distance, r_i the range of sensor i, and y_i its lateral offset. A step agrees if
-/// there is a track of this step, at least one sensor has a value, and
+/// Compares the track with the sensors. The Degree of Conflict is not sufficient for this: it
+/// compares only the sensors with each other, over a window of less than a second. The filter has a
+/// longer memory. So when the sensors agree again, the filter's track may still be metres away from
+/// the values of both sensors. Let d be the track's distance, r_i the range of sensor i, and y_i
+/// its lateral offset. A step agrees if there is a track of this step, at least one sensor has a
+/// value, and
 ///
 ///     |r_i - sqrt(d^2 + y_i^2)| <= hand_back_error_m     for each sensor i that has a value.
 class FusionRecovery {

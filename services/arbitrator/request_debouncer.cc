@@ -10,8 +10,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-// ln(p/(1 - p)). p is limited to [1e-12, 1 - 1e-12], because a smaller difference from 0 or 1 is
-// only rounding.
+// ln(p/(1 - p)). p is limited to [1e-12, 1 - 1e-12], because a smaller distance from 0 or 1 is only
+// a rounding error.
 double LogOdds(double probability) {
   constexpr double kNearest = 1e-12;
   const double p = std::clamp(probability, kNearest, 1 - kNearest);

@@ -1,4 +1,5 @@
-// Debouncer of the policy's engagement request: hysteresis, and a least time between two changes.
+// Debouncer of the policy's engagement request. The debouncer applies a hysteresis, and a least
+// time between two changes.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,20 @@ namespace fogline::arbitrator {
 ///     none  the human is wanted while DoC >= threshold
 ///     band  the human is wanted from DoC >= threshold until
 ///           DoC < threshold - min(band, threshold/2);
-///           this limit is at least threshold/2: so, if the threshold is above 0, the human is
-///           never wanted at a DoC of 0, also if the threshold changes
+///           this lower limit is at least threshold/2. So, if the threshold is above 0, the
+///           human is not wanted at a DoC of 0, even if the threshold changes during the run
 ///     sprt  Wald's sequential probability ratio test (1945):
 ///           in each step, L grows by logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           after every decision, a new test begins from L = 0
 ///
-/// A change of this result then waits until min_dwell_s has passed since the last change. The
-/// test's probabilities of error are alpha and beta if the DoC is a probability and its steps are
-/// independent. The DoC of a windowed z is not a probability, and its steps depend on each other.
-/// So the test then makes more errors. If the DoC is a posterior, it already contains the evidence
-/// of all steps. Then L = logit(DoC) - logit(threshold), so that evidence does not count twice.
+/// After the hysteresis, a change of the result also waits until min_dwell_s has passed since the
+/// last change. The probabilities of error of the test sprt are alpha and beta if the DoC is a
+/// probability, and if the DoCs of different steps are independent. A DoC that is computed from the
+/// conflict z of a window is not a probability, and successive DoCs depend on each other. So with
+/// this DoC the test makes more errors. If the DoC is a posterior, it already contains the evidence
+/// of all steps. L is then logit(DoC) - logit(threshold), so that no evidence counts twice.
 ///
 /// With hand_back fusion, a return to the automation also waits until the track has recovered
 /// (fusion_recovery.h). A request that is `firm` (policies::EngagementRequest) is never delayed.
@@ -44,12 +46,14 @@ class RequestDebouncer {
     return PutOff(request, doc, recovered);
   }
 
-  /// With hysteresis sprt: L of the current test, or L of the last step if the DoC is a posterior.
+  /// L of hysteresis sprt after the last step (see the class comment); 0 with every other
+  /// hysteresis.
   double evidence() const { return evidence_; }
 
  private:
-  /// Follows a firm request without delay. The test of hysteresis sprt begins again from L = 0. If
-  /// the request changes the wanted side, min_dwell_s begins again, too.
+  /// Returns the authority of a firm request without delay, and resets L to 0, so that hysteresis
+  /// sprt begins a new test. If the request changes the wanted side, the wait for min_dwell_s
+  /// starts in this step.
   double Follow(double lambda_human);
   double PutOff(const policies::EngagementRequest& request, double doc, bool recovered);
   bool HumanByHysteresis(const policies::EngagementRequest& request, double doc);

@@ -29,8 +29,8 @@ void SensorPairs::Match() {
   }
 }
 
-// The age of a pair is 0 at the decision of its own step. As long as no pair has come, the age is
-// the number of steps since the step before the first decision, so it is 1 at the first decision.
+// The age of a pair is 0 at the decision of its own step. Until the first pair has come, the age
+// counts from the step before the first decision. So the age is 1 at the first decision.
 void SensorPairs::Judge(std::int64_t step) {
   const auto age = static_cast<double>(step - (has_pair() ? pair_step_ : began_ - 1));
   const bool in_time = age <= section_.stale_periods;

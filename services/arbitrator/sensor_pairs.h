@@ -1,7 +1,7 @@
 // Pairs of radar and LiDAR values of the same step. In real time, one of the two values may come
-// late or not at all. A difference between values of two different steps would count relative
-// motion as conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of 0.1 s.
-// With the default of `doc_centre_m` the DoC is 1/2 at a difference of 1 m. So such a false
+// late or not at all. If the arbitrator compared values of two different steps, relative motion
+// would count as conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of
+// 0.1 s. With the default of `doc_centre_m` the DoC is 1/2 at a difference of 1 m. So this false
 // difference alone could cause a transfer.
 #pragma once
 
@@ -15,8 +15,9 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair of values, and its state (OK, STALE, ...). HealthSection gives the limits for
-/// the age of an input in periods. Here the age of a pair is counted in steps.
+/// The newest pair of radar and LiDAR values, and the state of this pair (OK, STALE, ...). The
+/// state depends on the age of the pair. HealthSection gives the limits for this age, in periods.
+/// One period is one step here.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);
@@ -28,7 +29,7 @@ class SensorPairs {
   InputState Update(std::int64_t step, const radar_t* radar, const lidar_t* lidar);
 
   bool has_pair() const { return pair_step_ >= 0; }
-  /// The step of the newest pair, -1 if there is no pair.
+  /// The step of the newest pair; -1 if there is no pair.
   std::int64_t newest() const { return pair_step_; }
   /// The newest pair. @pre has_pair()
   const radar_t& radar() const { return radar_; }
@@ -52,7 +53,7 @@ class SensorPairs {
 
   InputState state_ = InputState::kAwaited;
   std::int64_t began_ = -1;   // step of the first decision
-  std::int64_t in_time_ = 0;  // consecutive decisions with a pair that is not STALE by its age
+  std::int64_t in_time_ = 0;  // consecutive decisions with a pair that is young enough for OK
 };
 
 }  // namespace fogline::arbitrator

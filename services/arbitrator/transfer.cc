@@ -11,8 +11,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-// k of the sigmoid. k equals the paper's slope of the DoC, but per duration instead of per metre.
-// The steepest slope of the sigmoid is 2.53 times the slope of the linear ramp.
+// k of the sigmoid, per duration_s. The number is the same as in the paper's slope of the DoC (10
+// per metre). The steepest slope of the sigmoid is 2.53 times the slope of the linear ramp.
 constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -73,8 +73,8 @@ double Transfer::AuthorityTowards(double wanted) {
     return progress_ = Towards(progress_, wanted, progress_per_step_);
   }
   if (section_.profile != TransferProfile::kSigmoid) return wanted;
-  // At 0 and 1 the target is the wanted authority itself, because the logarithm in InverseSigmoid()
-  // would give a rounded value.
+  // If the wanted authority is 0 or 1, the target is this value itself, because the logarithm in
+  // InverseSigmoid() would give a rounded value.
   const double target = wanted == 0 || wanted == 1 ? wanted : InverseSigmoid(wanted);
   progress_ = Towards(progress_, target, progress_per_step_);
   if (progress_ == target) return wanted;

@@ -17,10 +17,10 @@ namespace fogline::arbitrator {
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
 ///     jerk_limited  like step, but with a limited jerk of the command until the command reaches a
 ///
-/// The gate is an option for every profile. It limits the command itself for gate_s after the
-/// beginning of a transfer. It also limits the change of the command until the command reaches a. A
-/// transfer begins when the wanted authority passes kMainAuthority. If a is below -yield_mps2, all
-/// limits of the command end immediately.
+/// The gate is an option for every profile. A transfer begins when the wanted authority passes
+/// kMainAuthority. For gate_s from this moment on, the gate limits the command itself. The gate
+/// also limits the change of the command in each step, until the command reaches the weighted
+/// acceleration a. If a is below -yield_mps2, all limits of the command end immediately.
 ///
 /// If lambda_H is 0 or 1 and no limit applies, the command is the offer of the side with authority,
 /// bit by bit. services/arbitrator/README.md describes the return to the automation.
@@ -44,7 +44,7 @@ class Transfer {
     return Smooth(wanted, offers, applied_mps2);
   }
 
-  /// Sets authority and command of this step to values that other code has decided. Later steps
+  /// Sets authority and command of this step to values that other code has chosen. Later steps
   /// continue from `actual`.
   void Overrule(const State& actual);
 

@@ -76,7 +76,8 @@ void ClosedLoop::ArbitrateFor(const ClosedLoop& shared) {
 }
 
 bool ClosedLoop::CommandsAs(const ClosedLoop& other) const {
-  // The world reads only the acceleration, and the driver only the mode.
+  // The world reads only the acceleration of HOST_COMMAND, and the driver only the mode. So the
+  // other fields may differ.
   return std::bit_cast<std::uint64_t>(command_->acceleration_mps2) ==
              std::bit_cast<std::uint64_t>(other.command_->acceleration_mps2) &&
          command_->mode == other.command_->mode;

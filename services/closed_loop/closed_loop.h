@@ -1,5 +1,5 @@
-// The whole experiment in one process without transport of messages, for sweeps, calibration and
-// tests. ClosedLoop calls the same Step functions as the processes, in the order of the graph
+// The whole experiment in one process, without transport of messages. Sweeps, calibration and tests
+// use it. ClosedLoop calls the same Step functions as the processes, in the order of the graph
 // table. The results equal the results of the distributed run.
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace fogline::closed_loop {
 
-/// The newest message of each kStep channel; before the first message, a message whose fields are
-/// all zero.
+/// The newest message of each kStep channel. If a channel has had no message yet, all fields of its
+/// message are zero.
 class Messages {
  public:
   Messages() {
@@ -132,31 +132,33 @@ class ClosedLoop {
     ClosedLoop& loop_;
   };
 
-  /// Ends the run, also before its last step.
+  /// Ends the run. End() may be called before the last step, too.
   void End();
   /// Computes the first role's messages of step 0. @throws InputError if a person drives
   void Begin(std::int64_t run_id);
-  /// Compute the messages of a step: of the roles between the first role and the arbitrator, of the
-  /// arbitrator, and of the roles after the arbitrator.
+  /// These three functions compute the messages of a step: first the messages of the roles between
+  /// the first role and the arbitrator, then the message of the arbitrator, then the messages of
+  /// the roles after the arbitrator.
   void ComputeBeforeArbitrator();
   void Arbitrate() { ArbitrateFor(*this); }
   void ComputeAfterArbitrator();
   /// Computes the first role's messages of the next step. @return false after the last step
   bool Advance();
 
-  /// Resets only the arbitrator, for a run that begins with the steps of another loop. For each of
-  /// these steps, ArbitrateFor() is called. LeaveFrom() then makes the run independent.
+  /// Resets only the arbitrator, for a run that shares its first steps with another loop. Call
+  /// ArbitrateFor() with the other loop in each of these steps. LeaveFrom() then makes the run
+  /// independent of the other loop.
   void RestartArbitrator(const Scenario& scenario);
   /// Computes the arbitrator's message from the messages of `shared`.
   void ArbitrateFor(const ClosedLoop& shared);
-  /// Whether the last HOST_COMMANDs of this loop and of `other` have the same effect on the other
-  /// roles.
+  /// Whether the last HOST_COMMANDs of this loop and of `other` have the same effect on the roles
+  /// that read them.
   bool CommandsAs(const ClosedLoop& other) const;
   /// Copies from `shared` the state of all roles except the arbitrator, and the messages of the
   /// step. Call ComputeAfterArbitrator() next. @pre ArbitrateFor(shared) was called in this step
   void LeaveFrom(const ClosedLoop& shared);
-  /// Calls `visit` with the messages of `shared`, except that HOST_COMMAND is the message of this
-  /// loop's arbitrator.
+  /// Calls `visit` with the messages of `shared`, but with the HOST_COMMAND of this loop's
+  /// arbitrator.
   template <class Visit>
   void VisitStepOf(const ClosedLoop& shared, Visit&& visit) const {
     Messages messages = shared.messages_;
@@ -214,7 +216,7 @@ class ClosedLoop {
   StepMessages copies_;                     // messages that LeaveFrom() has copied
 };
 
-/// A ClosedLoop for one run after another, with the same or other scenarios. Only one thread may
+/// A ClosedLoop for one run after another, with equal or different scenarios. Only one thread may
 /// use an object.
 class ReusedLoop {
  public:

@@ -9,7 +9,7 @@
 namespace fogline::closed_loop {
 namespace {
 
-/// Whether the state of every role but the arbitrator can be copied.
+/// Whether the state of every role except the arbitrator can be copied.
 bool CanBeCopied(const Scenario& scenario) {
   return []<class... A>(std::type_identity<std::tuple<A...>>, const Scenario& of) {
     return ((AlgorithmTraits<A>::kRole == Role::kArbitrator ||

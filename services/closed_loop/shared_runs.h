@@ -1,4 +1,5 @@
-// Runs that differ only in their arbitrators, without a second computation of equal steps.
+// Computes runs that differ only in their arbitrators. Steps that are equal in several runs are
+// computed only once.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +13,18 @@
 
 namespace fogline::closed_loop {
 
-/// Computes runs of several scenarios. Runs of scenarios that differ only in their section
-/// `arbitrator`, such as a run with traded control and its baseline, are equal until their
-/// arbitrators command something different: often until the fog. Such runs share all roles but the
-/// arbitrator up to that step. Then the state of the roles is copied. Each run has the same
-/// messages as in a ClosedLoop, bit by bit. An object keeps its loops from call to call. Only one
-/// thread may use an object.
+/// Computes runs of several scenarios. If scenarios differ only in their section `arbitrator`,
+/// their runs are equal until the arbitrators command something different. For example, a run with
+/// traded control and its baseline are often equal until the fog begins. Up to the first different
+/// command, these runs share all roles except the arbitrator. From this command on, a run that
+/// commands something different continues with a copy of the state of these roles. Each run has the
+/// same messages as in a ClosedLoop, bit by bit. An object keeps its loops from call to call. Only
+/// one thread may use an object.
 class SharedRuns {
  public:
   /// Computes all steps of all runs, and calls `visit(std::size_t run, const StepView&)` after each
   /// step, where `run` is the position of the scenario. The steps of a run come in their order. A
-  /// step of the first run comes before the same step of other runs.
+  /// step of the first run comes before the same step of every other run.
   /// @throws the exceptions of ClosedLoop; current() is then the run that has thrown
   template <class Visit>
   void Run(std::span<const Scenario> scenarios, Visit&& visit) {
@@ -42,22 +44,24 @@ class SharedRuns {
   std::size_t current() const { return current_; }
 
  private:
-  /// Positions of runs that have been equal so far.
+  /// The positions of the runs of a group. These runs have been equal so far.
   using Group = std::vector<std::size_t>;
 
-  /// Divides the runs into groups that may share steps. The first run is in the first group.
+  /// Divides the runs into groups. The runs of a group may share steps. The first run is in the
+  /// first group.
   static std::vector<Group> GroupsOf(std::span<const Scenario> scenarios);
   /// Makes a loop for each scenario, in their order.
   void Prepare(std::span<const Scenario> scenarios, const std::vector<Group>& groups);
   /// The loop that computes the steps of the group.
   ClosedLoop& Front(const Group& group) { return loops_[group.front()]; }
-  /// Computes the next step of the group up to the arbitrators. If the command of a run's
-  /// arbitrator does not have the same effect as the command of the front's arbitrator, the run is
-  /// moved from `group` to a new group in `left`. Runs whose commands have the same effect are
-  /// moved to the same new group.
+  /// Computes the next step of the group up to the arbitrators. Then compares the command of each
+  /// run with the command of the group's first run. If the two commands do not have the same
+  /// effect, the run is moved from `group` to a new group in `left`. Runs whose commands have the
+  /// same effect are moved to the same new group.
   void Decide(Group& group, std::vector<Group>& left);
 
-  /// Computes the rest of the runs of a group, and of the groups that have left it.
+  /// Computes the remaining steps of the runs in `group`, and then of the runs that have left the
+  /// group.
   /// @pre Decide(group, left) was called
   template <class Visit>
   void RunGroup(Group group, std::vector<Group> left, Visit& visit) {
@@ -78,8 +82,9 @@ class SharedRuns {
   std::size_t current_ = 0;
 };
 
-/// Whether the runs of two scenarios may share steps. The scenarios must be equal, or they differ
-/// only in the arbitrator and the state of every other role can be copied.
+/// Whether the runs of two scenarios may share steps. This is true if the scenarios are equal. It
+/// is also true if they differ only in section `arbitrator`, and the state of every other role can
+/// be copied.
 bool MayShareSteps(const Scenario& a, const Scenario& b);
 
 }  // namespace fogline::closed_loop

@@ -55,11 +55,11 @@ Driver::Driver(const Scenario& scenario)
 }
 
 // Sets the driver's task: to monitor in AUTOMATION and in the locked modes, to drive in all other
-// modes. In most modes other than AUTOMATION, the driver drives or has been asked to drive. A
-// driver who does not take over may still end the manoeuvre in which the car stops. A collision
-// warning and emergency braking also draw the driver's attention to the road. In the locked modes,
-// the driver has no task, because the car stands until the end of the run, or is in a manoeuvre
-// that no driver can end.
+// modes. In most modes other than AUTOMATION, the driver drives or has been asked to drive. If the
+// driver does not take over, the car begins a minimal risk manoeuvre, which the driver may still
+// end. A collision warning and emergency braking also draw the driver's attention to the road. In
+// the locked modes, the driver has no task, because the car stands until the end of the run, or is
+// in a manoeuvre that no driver can end.
 void Driver::SetOnDemandInput(const arbitration_t& host) {
   const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);
   task_ = monitors ? models::DriverTask::kMonitors : models::DriverTask::kDrives;

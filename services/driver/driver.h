@@ -18,8 +18,9 @@ namespace fogline::driver {
 
 /// The algorithm of the role `driver`. By default, it is the driver of Sourav & Cheng 2024: the
 /// Intelligent Driver Model on the ground truth. The driver perceives the truth perfectly and
-/// without delay, also in fog. The scenario sets the readiness. Each switch of scenario section
-/// `human` replaces a part of this driver by a more realistic model (services/models/driver).
+/// without delay, also in fog. The scenario sets the readiness. Each switch in the scenario's
+/// section `human` replaces a part of this driver by a more realistic model
+/// (services/models/driver).
 class Driver {
  public:
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps
@@ -29,7 +30,7 @@ class Driver {
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return scenario.human.loses_awareness && !scenario.person.drives;
   }
-  /// Takes the host's command of the previous step. The command's mode says which side drove.
+  /// Takes the host's command of the previous step. The mode of this command says which side drove.
   void SetOnDemandInput(const arbitration_t& host);
 
   /// Whether a person drives. SetLiveInput() is then called before every Step().
@@ -40,8 +41,8 @@ class Driver {
   void SetLiveInput(const driver_input_t* input);
 
   /// The acceleration that the driver offers. Call Step() in the order of steps. The result depends
-  /// on earlier steps only if the switch misjudges or loses_awareness is on. The result is valid
-  /// until the next call.
+  /// on earlier steps only if `misjudges` or `loses_awareness` of the section `human` is on. The
+  /// result is valid until the next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:

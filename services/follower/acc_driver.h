@@ -11,8 +11,8 @@
 
 namespace fogline::follower {
 
-/// The same ACC as in the host (services/acc), with its own parameters and with perfect sensors.
-/// Emergency braking, if the car has it, uses the same sensors.
+/// The same ACC as in the host (services/acc), with its own parameters and with perfect sensors. If
+/// the car has emergency braking, the emergency braking uses the same sensors.
 class AccDriver {
  public:
   /// @throws InputError if the section's weights make an ill-conditioned problem.
@@ -20,15 +20,15 @@ class AccDriver {
       : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model),
         aeb_(AebOf(scenario.followers)) {}
 
-  /// Resets the object to the state of a new AccDriver(scenario). Restart() is cheaper than a new
-  /// object if the ACC's parameters are unchanged.
+  /// Resets the object to the state of a new AccDriver(scenario). If the ACC's parameters are
+  /// unchanged, Restart() is cheaper than a new object.
   /// @throws the exceptions of the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
     aeb_ = AebOf(scenario.followers);
   }
 
-  /// The driver's action in the next step. @param now the truth, with a car ahead
+  /// The driver's action in this step. @param now the truth, with a car ahead
   DriverAction Step(const models::Situation& now);
 
  private:

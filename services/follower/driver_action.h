@@ -1,5 +1,5 @@
-// The action of a driver of a following car, and the emergency braking of this car. Every kind of
-// driver uses both.
+// The action of a driver of a following car, and the emergency braking of this car. All kinds of
+// driver use this file.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ inline std::optional<models::Aeb> AebOf(const FollowersSection& followers) {
   return models::Aeb(followers.aeb);
 }
 
-/// What a driver does in a step.
+/// The action of a driver in a step.
 struct DriverAction {
   double acceleration_mps2 = 0;
   double safe_distance_m = 0;  // T_hw v + d_0 of this driver at the present speed

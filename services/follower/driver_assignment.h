@@ -15,9 +15,9 @@ struct DriverAssignment {
   models::Style style = models::Style::kNormal;  // style of a person; without effect for an ACC
 };
 
-/// The driver of a following car; the car directly behind the host has number 0. Each car has its
-/// own random draw. So an additional car, or a change to one car, does not change the drivers of
-/// the other cars.
+/// The driver of this following car; the car directly behind the host has number 0. Each car has
+/// its own random draw. So an additional car, or a change to one car, does not change the drivers
+/// of the other cars.
 DriverAssignment AssignmentOf(const Scenario& scenario, std::size_t car);
 
 }  // namespace fogline::follower

@@ -27,8 +27,8 @@ Person MakePerson(const Scenario& scenario, std::size_t car, models::Style style
   }
 }
 
-/// The driver of this car. If this driver and `before` are both ACCs, the result is `before`,
-/// restarted. Otherwise the result is a new object. @param before may be nullptr
+/// The driver of this car. If this driver and `before` are both ACCs, the result is `before` after
+/// a Restart(). Otherwise the result is a new object. @param before may be nullptr
 CarDriver MakeDriver(const Scenario& scenario, std::size_t car, CarDriver* before) {
   const DriverAssignment assignment = AssignmentOf(scenario, car);
   if (!assignment.has_acc) return MakePerson(scenario, car, assignment.style);

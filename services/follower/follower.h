@@ -17,17 +17,17 @@ using CarDriver = std::variant<AccDriver, Person>;
 
 /// The algorithm of the role `follower`: it drives the following cars. The driver of each car is
 /// the same ACC as in the host (acc_driver.h), or a person (person.h). Each driver receives the
-/// truth: the gap, and the speeds of both cars. The following cars represent the traffic that a
-/// host endangers if it slows down for no reason. The following cars are not part of the host's
-/// automation.
+/// truth: the gap to the car ahead, and the speeds and accelerations of both cars. The following
+/// cars represent the traffic that a host endangers if the host slows down for no reason. The
+/// following cars are not part of the host's automation.
 class Follower {
  public:
   /// @throws InputError if the weights of scenario.follower make an ill-conditioned problem, or a
   ///     person's reaction time is more than 254 steps
   explicit Follower(const Scenario& scenario) { Restart(scenario); }
 
-  /// Resets the object to the state of a new Follower(scenario). Restart() is cheaper than a new
-  /// object if the parameters of the ACCs are unchanged.
+  /// Resets the object to the state of a new Follower(scenario). If the parameters of the ACCs are
+  /// unchanged, Restart() is cheaper than a new object.
   /// @throws the exceptions of the constructor; Restart() must then succeed before the next Step()
   void Restart(const Scenario& scenario);
 

@@ -1,4 +1,4 @@
-// A person in a following car: with a style, human errors, and optionally a safety model.
+// A person who drives a following car, with a style, human errors, and optionally a safety model.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@
 
 namespace fogline::follower {
 
-/// The IDM with the parameters of a driving style (services/models/follower/style.h), inside the
-/// Human Driver Model with its errors and reaction time (services/models/driver/human_driver.h).
-/// With a safety model, the person applies the smaller of two accelerations: the acceleration of
-/// the safety model, and the acceleration of the Human Driver Model. The safety model has no
-/// errors, and has its own reaction time (services/models/follower/safety_response.h). With sight
-/// fog, both models receive only what the person sees in fog, like the host's driver
-/// (services/models/driver/fog_sight.h). Emergency braking, if the car has it, also receives what
-/// the person sees. Emergency braking has no errors and no reaction time.
+/// The model of a person is the Human Driver Model with its errors and reaction time
+/// (services/models/driver/human_driver.h). It uses the IDM with the parameters of a driving style
+/// (services/models/follower/style.h). With a safety model, the person applies the smaller of two
+/// accelerations: the acceleration of the safety model, and the acceleration of the Human Driver
+/// Model. The safety model has no errors, and has its own reaction time
+/// (services/models/follower/safety_response.h). With sight fog, both models receive only what the
+/// person sees in fog, like the host's driver (services/models/driver/fog_sight.h). If the car has
+/// emergency braking, the emergency braking receives the same. It has no errors and no reaction
+/// time.
 class Person {
  public:
   /// @param sight nullopt if the person sees perfectly

@@ -5,7 +5,8 @@
 namespace fogline::fusion {
 namespace {
 
-/// Whether both are equal to the last bit. Then every computation has the same result with both.
+/// Whether both covariances are equal to the last bit. If they are, every computation has the same
+/// result with both.
 bool AreSame(const Ekf::Covariance& a, const Ekf::Covariance& b) {
   return std::memcmp(a.data(), b.data(), sizeof a) == 0;
 }
@@ -48,8 +49,9 @@ void Ekf::Start(const State& state, const Covariance& covariance) {
   now_ = 0;
 }
 
-// F, the matrix of the prediction in ekf.h, has ones on its diagonal and zeros below it. The
-// function leaves out these factors. The sums have the order a + (b + c), as in CorrectByBoth().
+// F, the matrix of the prediction in ekf.h, has ones on its diagonal and zeros below its diagonal.
+// The function leaves out the multiplications by these ones and zeros. The sums have the order
+// a + (b + c), as in CorrectByBoth().
 void Ekf::Predict(double host_acceleration_mps2) {
   const double t = step_s_;
   const double half_t2 = t * t / 2;
@@ -78,7 +80,8 @@ void Ekf::Predict(double host_acceleration_mps2) {
 
 const Ekf::StepUpdates* Ekf::StepFrom(const Covariance& covariance) const {
   for (const StepUpdates& step : steps_) {
-    // Most covariances differ in their first element.
+    // Most covariances differ in their first element, so the cheap comparison of this element comes
+    // first.
     if (step.predicted && step.from(0, 0) == covariance(0, 0) && AreSame(step.from, covariance)) {
       return &step;
     }

@@ -94,8 +94,8 @@ void Fusion::Start(const radar_t& radar, const lidar_t& lidar) {
 
 // Starts with the state that exactly explains the radar's two values. The covariance follows from
 // the noise of these values: P = J^-1 R J^-T, with the Jacobian J of both values and the diagonal
-// matrix R of their variances. The values contain no acceleration, so its variance is a parameter
-// of the scenario.
+// matrix R of their variances. The values contain no information about the acceleration, so the
+// variance of the acceleration is a parameter of the scenario.
 bool Fusion::StartFromRadar(const radar_t& radar) {
   const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
   const std::int8_t usage = distance ? track_t::USED : track_t::GATED;

@@ -17,28 +17,30 @@
 
 namespace fogline::fusion {
 
-/// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
-/// one value after another in this order. Each value is compared with the state that the earlier
-/// values have corrected. The noises of the values are independent. So without lateral offsets, the
-/// result equals the result of a joint correction. Missing values and values that the gate refuses
-/// are skipped.
+/// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range. One value
+/// after another corrects the filter, in this order. Each value is compared with the state that the
+/// values before it have corrected. The noises of the values are independent. So without lateral
+/// offsets, the result equals the result of a joint correction. Missing values and values that the
+/// gate refuses are skipped.
 ///
 /// The scenario's section `fusion` gives the assumed noise. The filter does not use the standard
 /// deviations that the sensors state (such as range_std_m), because a sensor does not know when fog
 /// makes its value wrong. With fusion.adaptive_noise, the filter itself estimates the noise of each
 /// value from the corrections by this value (adaptive_noise.h).
 ///
-/// A policy that selects sensors (services/decision/policies) first judges each step's values
-/// against the prediction. The values of a sensor that the policy does not select are compared with
-/// the prediction, but do not correct the filter.
+/// Some policies select sensors (services/decision/policies). Before the first correction of a
+/// step, such a policy receives the values of the step and the prediction, and makes its selection.
+/// The values of a sensor that the policy does not select are compared with the prediction, but do
+/// not correct the filter.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth. If it does, SetOnDemandInput() is called before
-  /// every Step().
+  /// Whether the scenario's policy needs the truth. If the policy needs it, SetOnDemandInput() is
+  /// called before every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
-  /// Copies share the policy that selects sensors.
+  /// Whether the copies of an object share a part of their state. They share the policy if it
+  /// selects sensors.
   static bool CopiesShareState(const Scenario& scenario);
   /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
@@ -49,10 +51,11 @@ class Fusion {
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
  private:
-  /// Values in order of use; index of track_t's innovation, innovation_variance and usage.
+  /// The measured values, in the order in which they correct the filter. Each constant is the index
+  /// of its value in track_t's innovation, innovation_variance and usage.
   enum Value : std::size_t { kRadarRange, kRadarRangeRate, kLidarRange, kNumValues };
 
-  /// A measured value as predicted from the present estimate.
+  /// The prediction of a measured value from the present estimate.
   struct Expectation {
     double value;
     Ekf::Jacobian jacobian;
@@ -72,7 +75,8 @@ class Fusion {
   void CorrectByLidar(const lidar_t& lidar);
   Expectation Expect(Value value) const;
   void Correct(Value value, double measured);
-  /// The usage of a value (see track_t). Called only if gate or policy may refuse values.
+  /// The usage of a value (see track_t). UsageOf() is called only if gate or policy may refuse
+  /// values.
   std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);

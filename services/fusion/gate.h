@@ -6,15 +6,15 @@
 namespace fogline::fusion {
 
 /// Gate on the normalised innovation squared of one measured value: nu^2 / S, with the innovation
-/// nu and its variance S. This number is chi-square distributed with one degree of freedom while
-/// the filter's model is valid (Bar-Shalom, Li & Kirubarajan 2001, section 5.4). After
+/// nu and its variance S. While the filter's model is valid, this number has the chi-square
+/// distribution with one degree of freedom (Bar-Shalom, Li & Kirubarajan 2001, section 5.4). After
 /// `reopen_after` refusals in a row, a change of the scene is more likely than failed measurements.
 /// So the gate then admits every value until a value is inside the limit again. A gate that never
 /// reopens refuses every value outside the limit.
 class Gate {
  public:
   /// @param probability probability that a good value is inside the gate, in (0, 1)
-  /// @param reopen_after at least 0; 0: the gate never reopens
+  /// @param reopen_after at least 0; if 0, the gate never reopens
   Gate(double probability, std::int64_t reopen_after);
 
   /// Whether to use a value with this normalised innovation squared. Call Admits() once per value.

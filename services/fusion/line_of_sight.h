@@ -14,11 +14,12 @@ namespace fogline::fusion {
 ///
 /// With y = 0, range and range rate are linear: r = d, and the range rate is dv. If an estimate has
 /// d < 0, the range counts as negative. The next measurement then pulls the estimate back to the
-/// front. With a positive range the estimate could stay at the mirror image behind the sensor.
+/// front. If the range were positive, the estimate could stay at the mirror image of the target
+/// behind the sensor.
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {
-    if (lateral_offset_m == 0) {  // same values as below, but without a root and divisions
+    if (lateral_offset_m == 0) {  // same result as below, without root and divisions
       if (std::abs(distance_m) >= kTouching_m) range_m_ = distance_m;
       return;
     }
@@ -42,7 +43,8 @@ class LineOfSight {
   }
 
  private:
-  // At a smaller range, the direction is mostly rounding, so the target counts as straight ahead.
+  // At a smaller range, rounding errors determine most of the direction, so the target counts as
+  // straight ahead.
   static constexpr double kTouching_m = 1e-9;
 
   double range_m_ = 0;

@@ -21,20 +21,22 @@ struct EchoPowers {
 class EchoModel {
  public:
   /// Makes the table for extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of
-  /// this interval, the fog's echo has the shape that it has at the nearer end.
+  /// this interval, J and r* (fog_beam.h) have the values of the nearer end.
   EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
 
-  /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
+  /// Echoes of a target at `range_m` and of the fog, in air of this visibility (both parameters are
+  /// above 0 m):
   ///     P_t / P_min = (Gamma / Gamma_c) (R_c / R)^2 xi(R) exp(-2 alpha R)
   ///     P_f / P_min = (pi beta / Gamma_c) R_c^2 J
   /// R is `range_m`. A target with the reflectivity Gamma_c = clear_reflectivity at the range R_c =
   /// clear_range_m has the power P_min in clear air (LidarBeamSection). fog_beam.h has the other
-  /// symbols. A target nearer than r* hides the fog behind it. The fog's echo then lies at R, with
-  /// J scaled by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
+  /// symbols. A target nearer than r* hides the fog behind it. The fog's echo then lies at R, and J
+  /// is multiplied by g(R)/g(r*). Up to the range R1 the beam is blind, so there is no echo.
   EchoPowers At(double range_m, double visibility_m) const;
 
-  /// Power of an echo at `range_m`, relative to the power of the target in clear air at this
-  /// distance. The result is 1 for the target itself in clear air, and a few per mille for fog.
+  /// Power of an echo at `range_m`, relative to the power that the target's echo has in clear air
+  /// at this distance. The result is 1 for the target itself in clear air, and a few per mille for
+  /// fog.
   double Intensity(double log_power, double range_m) const;
 
  private:

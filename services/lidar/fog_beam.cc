@@ -16,7 +16,7 @@ constexpr double kSpeedOfLight_mps = 299'792'458.0;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
 // kQuadratureNodes is the number of nodes for each smooth piece of the integrand. A precision of
-// 2^-14 in r* gives 2^-28 in J, because J is at its maximum there.
+// 2^-14 in r* gives 2^-28 in J, because the slope of J is 0 at r*.
 constexpr unsigned kQuadratureNodes = 20;
 constexpr int kPeakBits = 14;
 
@@ -66,8 +66,8 @@ double ChannelGain(const BeamOptics& optics, double extinction_pm, double range_
 
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm) {
   // g has one maximum. g folded with the pulse has one maximum, too. The folded pulse rises until
-  // the pulse reaches the maximum of g, and falls after the pulse has passed this maximum. So the
-  // maximum of the folded pulse lies between these two positions.
+  // the front of the pulse reaches the maximum of g. It falls after the end of the pulse has passed
+  // this maximum. So the maximum of the folded pulse lies between these two positions.
   const double from_m = StrongestGainRange(optics, extinction_pm);
   const auto negative = [&](double end_m) { return -FoldedPulse(optics, extinction_pm, end_m); };
   const auto [end_m, value] = boost::math::tools::brent_find_minima(

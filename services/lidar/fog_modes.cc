@@ -10,7 +10,7 @@
 namespace fogline::lidar {
 
 FogModes::FogModes(const FogModesSection& section) : section_(section) {
-  // Shares such as 0.1, 0.2 and 0.7 add up to 1 only up to a rounding error.
+  // The sum of shares such as 0.1, 0.2 and 0.7 may differ from 1 by a rounding error.
   constexpr double kRounding = 1e-9;
   const double sum = section.biased_share + section.near_echo_share + section.missing_share;
   if (sum > 1 + kRounding) {

@@ -24,7 +24,8 @@ enum class FogMode : std::uint8_t {
 ///     biased     l biased_share
 ///     right      all other steps
 ///
-/// Steps are independent. A share of 1 gives the pure mode at level 1.
+/// Steps are independent. With a share of 1, every step at level 1 has this mode (`missing`: only
+/// from missing_beyond_m on).
 class FogModes {
  public:
   /// @throw InputError if the shares add up to more than 1

@@ -42,7 +42,7 @@ const lidar_t& Lidar::Step(const truth_t& truth) {
   output_ = {};
   output_.header = truth.header;
   if (DropsOut(truth.header.step)) return output_;
-  // The gap is negative if the cars have collided; their bumpers then count as touching.
+  // If the cars have collided, the gap is negative. The LiDAR then measures a gap of 0.
   const double x = std::max(truth.host_gap_m, 0.0);
   const double target_m = std::sqrt(x * x + lidar_.lateral_offset_m * lidar_.lateral_offset_m);
   const std::optional<Echo> echo = modes_   ? ModalEcho(truth, target_m)
@@ -87,8 +87,9 @@ std::optional<Lidar::Echo> Lidar::ModalEcho(const truth_t& truth, double target_
   return PlainEchoAt(target_m, 0.0);
 }
 
-// The echo has the range that fog model `beam` gives for an echo of the fog. If the car is so near
-// that the beam is blind, the car hides the fog, and the echo has the car's range.
+// The echo has the range that fog model `beam` gives for an echo of the fog. The LiDAR does not see
+// fog nearer than overlap_start_m. If the car is nearer than that, it hides the rest of the fog,
+// and the echo has the car's range.
 Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
   const LidarBeamSection& beam = lidar_.beam;
   if (target_m <= beam.overlap_start_m) {

@@ -19,7 +19,8 @@
 namespace fogline::lidar {
 
 /// With the gap x and the lateral offset y, the target is at r = sqrt(x^2 + y^2). The LiDAR reports
-/// range = d + bias + noise with Gaussian white noise. The scenario's fog model gives d:
+/// range = d + bias + noise, where the noise is Gaussian and white. The scenario's fog model gives
+/// d:
 ///     none   d = r
 ///     bias   d = r - fog.bias_m * fog level              (Sourav & Cheng 2024)
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
@@ -29,8 +30,8 @@ namespace fogline::lidar {
 /// these two echoes is the beam's echo if its power exceeds the detection threshold. The fog's echo
 /// lies behind r* (fog_beam.h) by fog_range_scale_m times a random number with the distribution
 /// Beta(2, 20), but never behind the target. At least half of the beams must have an echo. So, for
-/// any odd number of beams, the LiDAR detects with probability 1/2 at the same range at which a
-/// single beam does so. A minority of the beams cannot determine the result.
+/// any odd number of beams, the range at which the LiDAR detects with probability 1/2 is the same
+/// as for a single beam. A minority of the beams cannot determine the result.
 class Lidar {
  public:
   /// Indices of the random numbers of stream kLidar within a step.
@@ -46,7 +47,7 @@ class Lidar {
   explicit Lidar(const Scenario& scenario);
 
   /// Resets the object to the state of a new Lidar(scenario). If the seed is unchanged, the object
-  /// may keep the random numbers of its noise. The next run is then cheaper than with a new object.
+  /// may keep the random numbers of its noise, so the next run is cheaper than with a new object.
   void Restart(const Scenario& scenario);
 
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,

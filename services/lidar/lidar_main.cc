@@ -1,6 +1,7 @@
 // The process `lidar`: measures the distance of the preceding car once per step. In fog, the LiDAR
-// sometimes measures the distance of the fog. The process does not receive the radar's values.
-// services/runtime/process/service.h connects the process to its channels.
+// may measure a distance that is too short, or the distance of the fog. The process does not
+// receive the radar's values. services/runtime/process/service.h connects the process to its
+// channels.
 #include "services/lidar/lidar.h"
 #include "services/runtime/process/service.h"
 

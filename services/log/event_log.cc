@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 // At most this many bytes of a mapped log stay in memory. This amount is small for a process, but
-// large enough for a call of madvise() to release many pages.
+// large enough that each call of madvise() releases many pages.
 constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(runtime::Bytes bytes, std::size_t offset) {
@@ -147,7 +147,7 @@ bool EventLogWriter::WriteOut() {
 }
 
 void EventLogWriter::CountWritten(runtime::Bytes bytes) {
-  if (bytes.empty()) return;  // for a null buffer libdeflate_crc32() returns its initial value
+  if (bytes.empty()) return;  // with a null buffer, libdeflate_crc32() would reset the checksum
   written_.bytes += std::ssize(bytes);
   written_.checksum = libdeflate_crc32(written_.checksum, bytes.data(), bytes.size());
 }

@@ -33,18 +33,19 @@ struct LogHead {
   std::int64_t events = 0;
 };
 
-/// The part of a log that one of its writers has reported: the bytes from offset `begin` up to
-/// offset `bytes`, and their CRC-32 (as zlib computes it).
+/// The part of a log that a recorder has written, as the recorder reports it in its STATUS. The
+/// part begins at offset `begin` and ends before offset `bytes`. `checksum` is its CRC-32 (as zlib
+/// computes it).
 struct WrittenLog {
   std::int64_t begin = 0;
   std::int64_t bytes = 0;
   std::uint32_t checksum = 0;
 };
 
-/// Size, in bytes, of the last part of a log. This part contains everything after the last complete
-/// step: a killed recorder leaves at most kRingSteps (64) incomplete steps and a torn event, and
-/// has not reported them. The part has 128 KiB for each channel. This is space for 87 messages of
-/// the largest size.
+/// Size of the tail of a log, in bytes. The tail contains all bytes after the last complete step. A
+/// killed recorder leaves there at most kRingSteps (64) incomplete steps and a torn event. It has
+/// written these bytes, but may not have reported them (WrittenLog). The tail has 128 KiB for each
+/// channel, which is space for 87 messages of the largest size.
 inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.
@@ -65,13 +66,14 @@ class EventLogWriter {
   /// this process is killed (kill -9).
   /// @throws std::runtime_error
   void Flush();
-  /// Bytes of all events so far, including the events that Flush() has not handed over yet.
+  /// Number of bytes of all events so far, including the events that Flush() has not handed over
+  /// yet.
   std::int64_t size() const { return size_; }
-  /// The bytes of all events so far (size()), and the number of these events.
+  /// The number of bytes of all events so far (size()), and the number of these events.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
   /// The part of the log that was handed to the operating system. In a continued log, this part
-  /// begins with the last kTailBytes of the old log, as read from the file. The earlier writer has
-  /// reported the bytes before this part.
+  /// begins with the last kTailBytes of the old log, as read from the file. The WrittenLog of the
+  /// earlier writer covers the bytes before this part.
   const WrittenLog& written() const { return written_; }
 
  private:
@@ -95,7 +97,7 @@ class EventLogWriter {
 void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime,
                  runtime::Bytes data, std::vector<std::uint8_t>& bytes);
 
-/// Appends an event behind the last event of a log.
+/// Appends an event after the last event of a log.
 /// @param before the known events of the log
 /// @return `before` and the new event
 /// @throws std::runtime_error if the event cannot be written; the error says whether the log is
@@ -145,7 +147,7 @@ class EventLogReader {
   const std::string& torn() const { return torn_; }
   /// Whether the file has no bytes.
   bool empty() const { return content_.empty(); }
-  /// Bytes of the complete events read so far.
+  /// Number of bytes of the complete events that have been read so far.
   std::size_t good_bytes() const { return offset_; }
   /// The part of the log that has been read so far.
   LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }

@@ -37,7 +37,7 @@ class InputLatencyAccumulator {
 
  private:
   runtime::DurationHistogram latencies_;
-  // time_us and latency_us of the last measurement of each instance.
+  // time_us and latency_us of the last measurement of each seat, by driver_input_t.instance.
   std::map<std::int64_t, std::pair<std::int64_t, std::int64_t>> newest_;
 };
 

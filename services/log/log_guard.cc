@@ -37,8 +37,8 @@ std::filesystem::path OlderOf(const std::filesystem::path& place) {
   return place.parent_path() / (".fogline-older-" + place.filename().string());
 }
 
-/// Makes an empty file with the name of an older log. The new file has the same permissions as
-/// `file`.
+/// Makes an empty file with the name that OlderOf() returns. The new file has the same permissions
+/// as `file`.
 std::optional<std::filesystem::path> EmptyFileBeside(const std::filesystem::path& file) {
   struct stat info {};
   std::filesystem::path name = OlderOf(file);
@@ -110,8 +110,8 @@ std::string TakeBackOlder(const std::filesystem::path& log, std::string_view opt
   const std::filesystem::path older = OlderOf(place);
   if (error || !IsOlderLog(older)) return "";
   const FileLock lock(log, FileLock::Kind::kOwn, option, "run", patience);
-  if (!IsOlderLog(older)) return "";              // its run has ended normally
-  if (std::filesystem::is_empty(older, error)) {  // its run was killed before the exchange
+  if (!IsOlderLog(older)) return "";              // the run that moved it has ended normally
+  if (std::filesystem::is_empty(older, error)) {  // that run was killed before the exchange
     std::filesystem::remove(older, error);
     return "";
   }

@@ -28,8 +28,8 @@ struct LogSeal {
   std::vector<std::uint8_t> event;  // the event's data, with the signature if there is one
 };
 
-/// Whether an event has the channel or the type of a seal. So a single change cannot make a seal
-/// look like another event.
+/// Whether an event has the channel or the type of a seal. One of the two is sufficient, so a
+/// single change cannot make a seal look like another event.
 bool IsLogSeal(const Event& event);
 /// @pre IsLogSeal(event)
 /// @param before the events before this event
@@ -42,15 +42,16 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 
-/// Why a run is not the sealed run; "" if it is the sealed run. @param steps the number of steps of
-/// the digest
+/// Why a run is not the sealed run; "" if it is the sealed run.
+/// @param digest the digest of the run
+/// @param steps the number of steps that this digest covers
 std::string WhyNotSealedRun(const LogSeal& seal, const std::string& digest, std::int64_t steps,
                             const std::string& scenario_hash);
 
-/// Why a file is not the sealed file; "" if it is the sealed file. A copy (LogSeal::copied) has
-/// other event times, so its bytes differ from the sealed bytes, and the result is "". If the bytes
-/// of a copy are equal to the sealed bytes, the time of the seal was changed, and the result states
-/// this.
+/// Why a file is not the sealed file; "" if it is the sealed file, or a copy (LogSeal::copied). A
+/// copy has other event times, so its bytes differ from the sealed bytes. If only the time of the
+/// seal was changed, the file also counts as a copy. But then its bytes before the seal are equal
+/// to the sealed bytes, and the result states the change.
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.
@@ -58,7 +59,7 @@ enum class SealSignature { kNone, kHolds, kWrong };
 SealSignature VerifySeal(const LogSeal& seal, const runtime::SigningKey& key);
 
 /// Why a log's bytes differ from the bytes that were written; "" if they do not differ.
-/// @param written for each writer of the log, the part of the log that the writer has reported last
+/// @param written for each writer of the log, its last report on the part that it has written
 std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenLog>& written);
 
 }  // namespace fogline::log

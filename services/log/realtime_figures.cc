@@ -7,10 +7,11 @@
 namespace fogline::log {
 namespace {
 
-// The largest number of steps that are kept. The last steps are needed because, in the log, a
-// STATUS may come after steps that are later than the step that the STATUS names. A role that
-// computes no step names the same step for a long time. After more than kKeptSteps further steps,
-// the number of its lost messages is only a lower bound.
+// The number of newest steps that are kept. Check() counts the messages up to the step that a
+// STATUS names. If the STATUS comes late in the log, later steps were already added. Check() needs
+// these later steps to subtract their messages. A role that computes no step names the same step
+// in its STATUS for a long time. If more than kKeptSteps steps follow this step, the number of the
+// role's lost messages is only a lower bound.
 constexpr std::size_t kKeptSteps = 1024;
 
 }  // namespace
@@ -65,7 +66,8 @@ void RealtimeAccumulator::Check(Process& process) {
 
 std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   const Role from = kChannels[channel].from;
-  // The world skips no step, even if several processes of the world compute the steps.
+  // The world skips no step, even if several processes of the world compute the steps. So the world
+  // has published a message for each step.
   if (from == Role::kWorld) return steps_ - logged_[channel];
   std::int64_t unlogged = 0;
   int processes = 0;
@@ -83,7 +85,7 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
     }
   }
   // With several processes the number of published messages is not known, because a restarted
-  // process may compute a step a second time.
+  // process may compute a step a second time. The result is then 0.
   return processes == 1 ? std::max<std::int64_t>(0, unlogged - late) : 0;
 }
 

@@ -22,7 +22,7 @@ struct RealtimeFigures {
   std::int64_t ticks = 0;         // steps that the world has begun
   std::int64_t ticks_late = 0;    // steps that the world has begun more than 5 ms late
   std::int64_t ticks_missed = 0;  // ticks that the world's process skipped
-  // 99 % quantile of the time between a step's due time and its beginning by the world.
+  // 99 % quantile of the time from the due time of a step until the world begins the step.
   std::int64_t jitter_p99_us = 0;
   // The time from sending TRUTH to receiving HOST_COMMAND, on the world's clock.
   std::int64_t latency_p50_us = 0;
@@ -37,7 +37,8 @@ struct RealtimeFigures {
   std::int64_t unlogged_messages = 0;
   // The channels that lack a published message, or may lack one. Messages before the first TRUTH of
   // the log do not count. A channel lacks a published message if STATUS shows this. A channel may
-  // lack a published message if a message is missing, and no STATUS says whether it was published:
+  // lack a published message if a message is missing, and no STATUS says whether it was published.
+  // There are three cases:
   // - The log has no STATUS of the producer.
   // - The log has no seal, and the message is of a step after the last STATUS of the producer.
   // - The log has no seal, and several processes have been the producer.
@@ -88,8 +89,8 @@ class RealtimeAccumulator {
   /// Adds the next step of the log. `there` has the channels of which the step has a message.
   void AddStep(const runtime::ChannelSet& there);
 
-  /// @param has_all whether the log has every message that the recorder has received, as a log with
-  ///     a seal has
+  /// @param has_all whether the log has every message that the recorder has received; true for a
+  ///     log that agrees with its seal
   RealtimeFigures Result(bool has_all = true) const;
 
  private:
@@ -116,13 +117,15 @@ class RealtimeAccumulator {
   std::int64_t steps_ = 0;                           // number of steps in the log
   std::int64_t late_steps_ = 0;                      // of these, the steps before the first TRUTH
   std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
-  // Number of steps without a message of each channel, after the last STATUS of its producer.
+  // For each channel: the number of steps without a message of this channel, after the last STATUS
+  // of its producer.
   std::array<std::int64_t, kNumChannels> unchecked_{};
   // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the
   // start of the process.
   std::map<std::pair<std::string, std::int64_t>, Process> last_;
-  std::deque<runtime::ChannelSet> kept_;       // the channels that each of the last steps has
-  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS, which is not yet added
+  std::deque<runtime::ChannelSet> kept_;  // the channels that each of the last steps has
+  // The processes whose last STATUS names a step that AddStep() has not added yet, by this step.
+  std::multimap<std::int64_t, Process*> due_;
 };
 
 }  // namespace fogline::log

@@ -17,8 +17,9 @@ namespace fogline::log {
 namespace {
 
 static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
-// While a whole log is read, a STATUS is sent after each piece of this many bytes. Even a slow disk
-// reads such a piece in less than two heartbeats.
+// While a whole log is read, a STATUS is sent after each piece of this many bytes, so that the
+// recorder does not count as silent. Even a slow disk reads such a piece in less than two
+// heartbeats. (A heartbeat is the usual interval between two STATUS messages.)
 constexpr std::int64_t kAliveEvery = 8 << 20;
 // Largest number of consecutive steps that a log in real time can lack. A run that loses more steps
 // has already ended for another reason.
@@ -46,8 +47,9 @@ class Follower {
   const Remains& remains() const { return remains_; }
 
  private:
-  /// Whether the event belongs to a run in real time, but to no step. (The STATUS of a role that
-  /// has computed no step has step -1.)
+  /// Whether the event is a STATUS, DRIVER_INPUT, TRIAL or wall clock of the run. In the log of a
+  /// run in real time, such events may come between the messages of the steps. The step of the
+  /// event is not checked: the STATUS of a role that has computed no step has step -1.
   bool IsBeside(const Event& event) const {
     constexpr std::array kBeside{ChannelOf<status_t>().name, ChannelOf<driver_input_t>().name,
                                  ChannelOf<trial_t>().name, kWallClockChannel};

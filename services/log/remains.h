@@ -40,8 +40,8 @@ struct Remains {
 };
 
 /// Finds the last complete step of a log that a recorder was writing. Usually the end of the file
-/// shows this step. Otherwise the function reads the log from its beginning to the first event that
-/// does not continue the log.
+/// shows this step. Otherwise the function reads the log from its beginning, and stops at the first
+/// event that cannot follow the events before it.
 /// @param front scenario and graph of the log; the scenario must be complete
 /// @param alive is called repeatedly, with the number of steps so far, while the function
 ///     reads the whole log

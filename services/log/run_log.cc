@@ -41,17 +41,20 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
   std::int64_t step() const { return next_ - 1; }
   bool InTail() const { return tail_ && step() >= *tail_; }
-  /// Whether gaps are read. A run in real time has another rule for missing messages.
+  /// Whether the reader accepts gaps (steps that lack messages). In real time the result is false,
+  /// because realtime_ counts the missing messages.
   bool ReadsGaps() const { return options_.gaps && !realtime_; }
 
  private:
   // In real time, a message may come in the log after messages of later steps. The later steps are
   // at most this many steps ahead.
   static constexpr std::int64_t kLongestOverdue = 64;
-  // If gaps are read, at most this many steps wait for their missing messages. A logger may receive
-  // a repeated message after messages of far later steps.
+  // If gaps are read, at most this many steps wait for their missing messages. The number is large,
+  // because a logger may miss a message and receive its repetition only after messages of much
+  // later steps.
   static constexpr std::size_t kMostOpen = 4096;
-  // A message of a step that is further ahead than this number does not belong to the run.
+  // A message whose step is more than this number of steps ahead of the next step does not belong
+  // to the run.
   static constexpr std::int64_t kLongestGap = 1'000'000;
 
   struct Pending {
@@ -125,12 +128,13 @@ class RunLogReader::Assembler {
   }
 
   /// The first of the incomplete steps that a run leaves when it ends early; nullopt if it leaves
-  /// none. The world is at most kMaxAhead steps ahead of the log.
+  /// none. There are at most kMaxAhead such steps, because the world is at most this number of
+  /// steps ahead of the log.
   std::optional<std::int64_t> Tail() const {
     if (pending_.empty()) return std::nullopt;
     const auto& [newest, messages] = *pending_.rbegin();
-    // If TRUTH has `last`, the run ends with this step, so the missing messages of this step are
-    // gaps.
+    // If the TRUTH of the newest step has `last`, the run did not end early. So the missing
+    // messages of this step are gaps.
     truth_t truth{};
     if (runtime::Decode(messages.messages[IndexOf<truth_t>()], truth) && truth.last) return {};
     auto step = pending_.rbegin();
@@ -296,7 +300,9 @@ class RunLogReader::Assembler {
     }
   }
 
-  /// Takes an event that no process sends. Signed traffic has no such events except the seal.
+  /// Takes an event about the log itself: its seal, its graph, or the priority of the roles. Such
+  /// an event is written into the file, and no process sends it as a message. A log of signed
+  /// messages has no such event except the seal.
   void TakeAbout(const Event& event) {
     if (IsLogSeal(event)) return TakeSeal(event);
     if (is_signed_) return;
@@ -329,7 +335,8 @@ class RunLogReader::Assembler {
   void ExpectRealtime(const run_t& run) {
     const Scenario scenario = ParseLoggedScenario(parts_.Text(), file_);
     steps_ = scenario.steps;
-    // A message that came before the scenario can have any step number.
+    // A message that came before the scenario can have any step number. Steps that the scenario
+    // does not have are removed.
     pending_.erase(pending_.lower_bound(steps_), pending_.end());
     realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
   }

@@ -41,14 +41,17 @@ struct RunLog {
   // Digest of these steps. It is empty if there are no such steps. It is also empty if the log has
   // gaps and the reader accepts them (ReadOptions::gaps).
   std::string digest;
-  // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
-  // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
-  // messages of one step and channel differ. (A message is not compared if Next() has already
-  // returned its step.) In lockstep, the log must also have all messages.
+  // Whether the log has the whole run, up to its end. This is true under these conditions:
+  // - The scenario is known.
+  // - The log ends with the last step of the run, and no event is cut off.
+  // - The log was not changed after it was sealed.
+  // - No two messages of one step and channel differ. (A message is not compared if Next() has
+  //   already returned its step.)
+  // - In lockstep: the log has all messages.
   bool ended = false;
-  // Whether `ended` is true and, in real time, STATUS says that no published message is missing. If
-  // the log has no sound seal, STATUS must say this for all steps up to the last step that lacks a
-  // message.
+  // Whether `ended` is true and the log has every published message. In lockstep this is the same
+  // as `ended`. In real time, STATUS messages in the log must show that no published message is
+  // missing (RealtimeFigures::unlogged_messages and unlogged_channels).
   bool complete = false;
   // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;

@@ -1,7 +1,7 @@
 // The order of the steps in a log of the recorder. In lockstep, all messages of a step are next to
-// each other, in the order of the graph table. In a log with the wall clock, the wall clock of a
-// step follows its messages. So the number of an event determines its step and channel. In real
-// time, messages may be missing, and STATUS messages come between the steps.
+// each other, in the order of the graph table (services/graph.h). In a log with the wall clock, the
+// wall clock of a step follows its messages. So the number of an event determines its step and
+// channel. In real time, messages may be missing, and STATUS messages come between the steps.
 #pragma once
 
 #include <algorithm>

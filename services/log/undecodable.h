@@ -1,4 +1,4 @@
-// Messages of a log that do not decode: which one is the first of a step, and the text about it.
+// Finds the first message of a step that does not decode, and makes the text about such a message.
 #pragma once
 
 #include <cstddef>

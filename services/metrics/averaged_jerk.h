@@ -14,7 +14,7 @@ namespace fogline::metrics {
 ///     |a(t) - a(t - 1 s)| / 1 s
 ///
 /// For a change within one step, such as a hand-over, this value does not depend on the length of
-/// the step. (The change divided by the length of the step grows as the step shrinks.)
+/// the step. (The change divided by the length of the step would be larger for a shorter step.)
 class AveragedJerk {
  public:
   /// Adds a sample. The times of the samples ascend.

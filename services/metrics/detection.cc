@@ -31,7 +31,8 @@ void DetectionAccumulator::Pass(double duration_s) {
 }
 
 void DetectionAccumulator::Add(const Sample& sample) {
-  // A log that begins late with an alarm may lack the beginning of this alarm.
+  // If a log begins late and its first step has an alarm, the alarm may have begun earlier. So this
+  // alarm does not count as a false alarm.
   const bool began_before = !begun_ && sample.step > 0;
   if (begun_) Pass(sample.time_s - time_s_);
   const bool deceived = IsDeceived(sample);

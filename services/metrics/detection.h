@@ -12,10 +12,11 @@ namespace fogline::metrics {
 
 /// In a step the LiDAR is *deceived* if it has a value with an error (LidarError) of more than a
 /// tolerance. Otherwise the LiDAR is *right*; a LiDAR without a value counts as right. An *alarm*
-/// lasts while the Degree of Conflict is at least the threshold of the step, under any policy.
+/// lasts while the Degree of Conflict is at least the threshold of the step. The policy has no
+/// effect on this definition.
 struct DetectionMetrics {
-  /// Time in which the human is the wrong driver, s: the human's time while the LiDAR is right,
-  /// weighted by the human's authority.
+  /// Time in which the human is the wrong driver, s: the time while the LiDAR is right, weighted by
+  /// the human's authority.
   double wrong_human_s = 0;
   /// Time in which the automation is the wrong driver, s: the time while the track is wrong
   /// (TrackJudge), weighted by the automation's authority. A policy that does not use the deceived
@@ -27,8 +28,8 @@ struct DetectionMetrics {
   /// before the LiDAR's error exceeds the tolerance. nullopt if the LiDAR is never deceived, or if
   /// no alarm follows. `fogline study conflict` reports delays since the beginning of the fog.
   std::optional<double> deception_to_alarm_s;
-  /// Alarms that begin in clear air while the LiDAR is right, per hour of such time; nullopt
-  /// without such time.
+  /// Number of alarms that begin in clear air while the LiDAR is right, per hour of clear air with
+  /// a right LiDAR; nullopt if the run has no such time.
   std::optional<double> false_alarms_ph;
 };
 

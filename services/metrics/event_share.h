@@ -14,9 +14,9 @@ struct EventShare {
   double upper = 1;
 };
 
-/// The share of `events` in `runs`, with the bounds of Clopper & Pearson 1934. They contain the
-/// event's probability with at least this confidence, for any probability. With 0 events in n runs,
-/// the upper bound at 95 % is 3.7/n. (A one-sided bound would be about 3/n.)
+/// The share of `events` in `runs`, with the bounds of Clopper & Pearson 1934. The bounds contain
+/// the event's probability p with at least this confidence, whatever p is. With 0 events in n runs,
+/// the upper bound at 95 % is about 3.7/n. (A one-sided bound would be about 3/n.)
 /// @param events in [0, runs]  @param runs at least 1  @param confidence in (0, 1)
 /// @throws std::invalid_argument
 EventShare ClopperPearson(std::int64_t events, std::int64_t runs, double confidence = 0.95);

@@ -34,8 +34,8 @@ struct RunMetrics {
   std::optional<double> min_host_gap_m;
   /// Smallest true gap from the first following car to the host, m.
   std::optional<double> min_follower_gap_m;
-  /// Surrogate measures of the host behind the preceding car, and of the first following car behind
-  /// the host.
+  /// Surrogate measures of safety (surrogate.h), such as the time to collision: of the host behind
+  /// the preceding car, and of the first following car behind the host.
   PairMetrics host;
   PairMetrics follower;
   /// Largest compromised safety CS, m (Sourav & Cheng 2024; see CompromisedSafety).
@@ -54,10 +54,10 @@ struct RunMetrics {
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
-  /// This definition is our interpretation. With the literal meaning of the words of Sourav & Cheng
-  /// 2024, the 0 % that they print beside an SI of 80.79 % would be impossible. Engaged means
-  /// lambda_H > 0, as HumanIsEngaged() in services/host_modes.h. In traded control an engaged human
-  /// drives. In shared control, an engaged human may have only a small part of the authority.
+  /// This definition is our interpretation. The literal meaning of the words of Sourav & Cheng 2024
+  /// cannot give the 0 % that they print beside an SI of 80.79 %. Engaged means lambda_H > 0, as
+  /// HumanIsEngaged() in services/host_modes.h. In traded control an engaged human drives. In
+  /// shared control, an engaged human may have only a small part of the authority.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. This time ends when the last step begins, because
   /// the command of the last step is never carried out.
@@ -87,8 +87,8 @@ struct RunMetrics {
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
   std::optional<double> max_abs_acceleration_mps2;
   /// Largest |jerk| of the host, m/s3: the change of the applied acceleration from one step to the
-  /// next, divided by the time between them. So a jump of the acceleration has a jerk that grows as
-  /// the step shrinks.
+  /// next, divided by the time between them. So the jerk of a jump of the acceleration is larger if
+  /// the steps are shorter.
   std::optional<double> max_abs_jerk_mps3;
   /// Largest |jerk| of the host, averaged over 1 s as in ISO 15622, m/s3 (AveragedJerk): the
   /// largest change of the applied acceleration within 1 s. This value does not depend on the
@@ -99,8 +99,8 @@ struct RunMetrics {
 
   /// Largest Degree of Conflict, in [0, 1].
   std::optional<double> max_doc;
-  /// Smallest and largest windowed conflict z in clear air, m. Steps after the fog count as clear
-  /// air, also if their window still contains steps in fog.
+  /// Smallest and largest conflict z in clear air, m. z is an average over a window of steps. Steps
+  /// after the fog count as clear air, even if their window still contains steps in fog.
   std::optional<double> min_conflict_clear_m;
   std::optional<double> max_conflict_clear_m;
   /// Root of the mean square of fused distance minus true gap over the steps with a track, m.

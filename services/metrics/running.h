@@ -1,4 +1,4 @@
-// Running extremes and means, and the tolerance for equal times.
+// Extremes and means of values that are added one after another, and the tolerance for equal times.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,8 @@
 
 namespace fogline::metrics {
 
-/// Times are whole microseconds. Two times that differ by less than this count as equal.
+/// The times of steps are whole microseconds. So two times in seconds count as equal if they differ
+/// by less than kSameTime_s, half a microsecond.
 inline constexpr double kSameTime_s = 0.5e-6;
 
 /// Sets `least` to `value` if `value` is smaller or is the first value. A missing value (NaN) has

@@ -25,10 +25,10 @@ struct Sample {
   double follower_speed_mps = 0;
   double follower_acceleration_mps2 = 0;
   double follower_gap_m = 0;            // gap to the host
-  double follower_safe_distance_m = 0;  // d_r,f
-  double acc_acceleration_mps2 = 0;     // offered a_A
-  double driver_acceleration_mps2 = 0;  // offered a_H
-  double command_mps2 = 0;              // commanded a for the step that begins here
+  double follower_safe_distance_m = 0;  // d_r,f of the car's driver
+  double acc_acceleration_mps2 = 0;     // a_A, the offer of the automation
+  double driver_acceleration_mps2 = 0;  // a_H, the offer of the driver
+  double command_mps2 = 0;              // commanded acceleration for the step that begins here
   double lambda_automation = 1;
   double lambda_human = 0;
   double conflict_m = 0;

@@ -18,8 +18,8 @@ class SampleDecoder {
     });
   }
 
-  /// Decodes a step in which messages may be missing. The result is also nullptr if TRUTH is
-  /// missing.
+  /// Decodes a step in which messages may be missing.
+  /// @return as Decode(); also nullptr if TRUTH is missing
   template <class Messages>
   const Sample* DecodeWithHoles(const Messages& messages) {
     if (messages[IndexOf<truth_t>()].empty()) return nullptr;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A slower car counts as standing and has no time gap. The least speed that a wheel speed sensor
-// detects is ten times this speed.
+// A car that is slower than this speed counts as standing and has no time gap. The least speed that
+// a wheel speed sensor detects is ten times this speed.
 constexpr double kStanding_mps = 0.01;
 
 double NormalShare(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }

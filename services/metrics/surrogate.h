@@ -30,16 +30,17 @@ double DecelerationToAvoidCrash(const CarPair& pair);
 
 /// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r.
 /// PICUD is the gap that remains if the car ahead brakes now with b = picud_braking_mps2, and the
-/// car behind brakes as hard after its reaction time t_r = picud_reaction_s (Uno et al. 2002). A
-/// value below 0 is dangerous.
+/// car behind brakes equally hard after its reaction time t_r = picud_reaction_s (Uno et al. 2002).
+/// A value below 0 is dangerous.
 double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair);
 
 /// Probability that a car's maximum available deceleration is below `drac_mps2`. The maximum
 /// available deceleration has a truncated normal distribution (Cunto & Saccomanno 2008).
 double CrashProbability(const MeasuresSection& section, double drac_mps2);
 
-/// Compromised safety CS in m: the shortfall of a car's gap d below its driver's dynamic safe
-/// distance d_r, max(0, d_r - d) (Sourav & Cheng 2024). The result is NaN if d or d_r is NaN.
+/// Compromised safety CS in m, max(0, d_r - d) (Sourav & Cheng 2024): the length by which a car's
+/// gap d is below the dynamic safe distance d_r of its driver. The result is NaN if d or d_r is
+/// NaN.
 double CompromisedSafety(double safe_distance_m, double gap_m);
 
 /// Measures of a pair of cars over a run. A field is nullopt if the run has no step that is
@@ -67,8 +68,9 @@ struct PairMetrics {
   /// Least gap minus RSS safe distance, m, with the parameters that ad-rss-lib suggests (the
   /// defaults of models::RssParameters).
   std::optional<double> min_rss_margin_ad_rss_m;
-  /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
-  /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).
+  /// Crash potential index, in [0, 1] (Cunto & Saccomanno 2008): the mean over time of the
+  /// probability that the deceleration rate to avoid a crash exceeds the car's maximum available
+  /// deceleration (CrashProbability()).
   std::optional<double> cpi;
 };
 

@@ -13,9 +13,9 @@ struct RainCoefficients {
   double alpha;
 };
 
-/// Liquid water in fog, in g/m3: M = 0.5 (50 m / visibility)^1.285, the power law through both
-/// pairs of values in ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. The true value also
-/// depends on the drops, so published formulas differ by a factor of two.
+/// Liquid water in fog, in g/m3: M = 0.5 (50 m / visibility)^1.285. This power law goes through
+/// both pairs of values in ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. The true value
+/// also depends on the drops, so published formulas differ by a factor of two.
 double LiquidWater_gpm3(double visibility_m);
 
 /// Specific attenuation by fog per liquid water, K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations

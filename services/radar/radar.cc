@@ -9,8 +9,8 @@
 namespace fogline::radar {
 namespace {
 
-// At 77 GHz the attenuations of the two polarisations differ by less than 5 %. Horizontal
-// polarisation has the larger attenuation.
+// At 77 GHz the attenuations of the two polarisations differ by less than 5 %. The radar always has
+// horizontal polarisation, which has the larger attenuation.
 constexpr Polarization kPolarization = Polarization::kHorizontal;
 
 }  // namespace

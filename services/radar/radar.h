@@ -12,12 +12,13 @@
 
 namespace fogline::radar {
 
-/// Here x is the gap and y the lateral offset. A target at r = sqrt(x^2 + y^2) is measured as
+/// x is the gap, x' its rate, and y the lateral offset. A target at r = sqrt(x^2 + y^2) is measured
+/// as
 ///     range = r + bias + noise,   range rate = x x' / r + noise
 /// where noise is Gaussian and white. The radar has no value for a target beyond the maximum range,
-/// and no value in a step with a dropout. Rain shortens the maximum range. Fog shortens the maximum
-/// range with the fog models beam and modes. With the fog models none and bias, fog has no effect
-/// on the radar, as in the paper (Sourav & Cheng 2024).
+/// and no value in a step with a dropout. Rain shortens the maximum range. With the fog models beam
+/// and modes, fog also shortens the maximum range. With the fog models none and bias, fog has no
+/// effect on the radar, as in the paper (Sourav & Cheng 2024).
 class Radar {
  public:
   /// Indices of the random numbers of stream kRadar within a step.
@@ -27,7 +28,7 @@ class Radar {
   explicit Radar(const Scenario& scenario);
 
   /// Resets the object to the state of a new Radar(scenario). If the seed is unchanged, the object
-  /// may keep the random numbers of its noise. The next run is then cheaper than with a new object.
+  /// may keep the random numbers of its noise, so the next run is cheaper than with a new object.
   void Restart(const Scenario& scenario);
 
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,

@@ -22,9 +22,9 @@ class AskedSteps {
     Channels channels;
   };
 
-  /// The largest number of steps in the set. A role whose request is dropped asks again. Even if
-  /// all roles of a run ask for different steps at the same time, they ask for only a seventh of
-  /// this number.
+  /// The largest number of steps in the set. If the set is full, Add() drops a request for a
+  /// further step, and the role asks again. Even if all roles of a run ask for different steps at
+  /// the same time, they ask for only a seventh of this number.
   static constexpr std::size_t kMost = 4096;
 
   void Add(std::int64_t step, Channels channels) {

@@ -34,7 +34,8 @@ class History {
   std::int64_t steps() const { return steps_; }
 
   /// Calls `use` with each message of this step, in the order of the log.
-  /// @pre the step is known, and the operating system has its bytes
+  /// @pre the step is known, and its bytes can be read from the file (no buffer of this process
+  ///     still holds them)
   /// @throws std::runtime_error if the file cannot be read
   void ForEachMessage(std::int64_t step,
                       const std::function<void(std::string_view channel, runtime::Bytes)>& use);
@@ -64,7 +65,8 @@ class History {
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
   std::int64_t end_;   // byte at which the last step ends
-  // Recently found steps, and the steps after them, because these are usually requested next.
+  // Recently found steps, and the step after each found step, because roles usually request steps
+  // in order.
   std::array<Place, runtime::kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;
 };

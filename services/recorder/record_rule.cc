@@ -92,7 +92,8 @@ void RecordRule::OnInput(std::size_t input, std::int64_t step, runtime::Arrival&
 void RecordRule::CountRefused(std::size_t input, std::int64_t step) {
   const runtime::StepRing& ring = parts_.inputs.all()[input].ring;
   // If the ring has the input's message of this step, the log has the message, too. If the step is
-  // older than the ring, the recorder does not know whether the log has the message.
+  // older than the ring, the recorder does not know whether the log has the message. In both cases
+  // the message is not counted.
   if (ring.Has(step) || step <= ring.newest() - runtime::kRingSteps) return;
   Refused& refused = refused_[input];
   if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;

@@ -1,7 +1,7 @@
 // The recorder's rule in real time: the world does not wait for the recorder. The recorder writes
 // steps in order as soon as they are complete. The recorder asks for a missing message while the
 // producer can still have it. A step that stays incomplete is written without the missing messages.
-// RUN tells the recorder that a step is under way, even if no message of the step has come. Each
+// RUN tells the recorder that a step has begun, even if no message of the step has come. Each
 // STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the step in which it
 // came. The reason is that the states of the roles, the acts of a person and the facts of a trial
 // are part of the record.
@@ -26,8 +26,9 @@ class RecordRule final : public runtime::FireRule {
   void OnInput(std::size_t input, std::int64_t step, runtime::Arrival& arrival) override;
   TimePoint Poll(TimePoint now) override;
   void OnProgress() override;
-  /// Writes the figures of this rule into STATUS. Only messages that the log lacks count as late,
-  /// because `unlogged_messages` (RealtimeFigures) is computed from this count.
+  /// Writes the states of the inputs and the statistics into STATUS. Only messages that the log
+  /// lacks count as late (`input_late`), because RealtimeFigures::unlogged_messages is computed
+  /// from this count.
   void WriteStatus(TimePoint now) override;
 
   /// Calls `use` once for each STATUS, DRIVER_INPUT and TRIAL that came in this step or before.
@@ -35,10 +36,10 @@ class RecordRule final : public runtime::FireRule {
                   const std::function<void(std::string_view channel, runtime::Bytes)>& use);
 
  private:
-  /// A step that is under way and not written yet.
+  /// A step that has begun and is not written yet.
   struct Open {
     std::int64_t step = -1;
-    TimePoint seen{};  // time of its first message, or of the first sign that it is under way
+    TimePoint seen{};  // time of its first message, or of the first sign that it has begun
     int asked = 0;
     TimePoint asked_at{};
   };
@@ -60,8 +61,8 @@ class RecordRule final : public runtime::FireRule {
   TimePoint Fire(TimePoint now);
   /// Counts a late message that is not in the log.
   void CountRefused(std::size_t input, std::int64_t step);
-  /// Notes that the steps up to this one are under way. If a message of these steps has not come
-  /// after the time overdue_, the recorder asks for it.
+  /// Notes that all steps up to this step have begun. If a message of these steps has not come
+  /// after the time overdue_, the recorder asks for this message.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;

@@ -16,9 +16,10 @@ namespace {
 
 // Number of steps between two acknowledgements: a quarter of the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
-// The limits for messages that are sent again, per second and in one burst. At the limit per second
-// the answers take about a fifth of one processor's time. A role that starts again asks for its
-// inputs of 63 steps at a time. With six inputs these are 378 messages, an eighth of a burst.
+// The largest number of messages that the recorder sends again, per second and in one burst. At the
+// limit per second the answers take about a fifth of one processor's time. A role that starts again
+// asks for its inputs of 63 steps at a time. With six inputs these are 378 messages, an eighth of a
+// burst.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
@@ -42,7 +43,8 @@ Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
       file_(file),
       existing_(existing),
       wall_clock_(wall_clock == WallClock::kYes) {
-  // On a bus in memory, no other process can send a flood of requests.
+  // On a bus in memory, no other process can send a flood of requests. So the number of answers has
+  // no limit.
   const double at_most = runtime::IsInMemory(bus.url()) ? kNoLimit : 1;
   node_.outputs().limiter() =
       runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
@@ -79,8 +81,8 @@ bool Recorder::Resume() {
   }
   const log::Remains remains = ReadOwnRemains(front);
   if (!front.parts.Complete()) return false;
-  // All steps of a log in lockstep have the same events. So the old steps decide whether the new
-  // steps have a wall clock.
+  // In lockstep, either all steps of a log have a wall clock, or none has one. So if the log
+  // already has steps, these steps decide whether the new steps have a wall clock.
   if (!parts_.run.realtime && remains.steps > 0) wall_clock_ = front.wall_clock;
   log_.emplace(file_, remains.head);
   log::LogFront continued = front;
@@ -99,8 +101,9 @@ log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   };
   log::Remains remains;
   if (front.parts.Complete()) remains = log::ReadRemains(file_, front, say_so_far);
-  // The world begins a step only when the step that is kMaxAhead steps earlier is on disk. In real
-  // time the world does not wait, and a missing step is a gap in the log.
+  // In lockstep, the world begins a step only when the step that is kMaxAhead steps earlier is on
+  // disk. So all steps up to `progress - kMaxAhead` were on disk. A log that lacks one of them is
+  // refused. In real time the world does not wait, and a missing step is a gap in the log.
   const std::int64_t written = parts_.run.progress - runtime::kMaxAhead + 1;
   if (!parts_.run.realtime && remains.steps < written) {
     throw InputError(fmt::format("{}: the log has {} steps, but the recorder had written {}",
@@ -184,7 +187,7 @@ void Recorder::Compute(std::int64_t step) {
   if (recording_ != nullptr) WriteEvents(step);
   history_->Add(log_->size());
   // In real time, the recorder flushes each step, because a restarted recorder can ask the roles
-  // for only the newest 32 steps. There is enough time to flush.
+  // for only the newest 32 steps. The time between two steps is long enough to flush.
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -206,8 +209,8 @@ void Recorder::OnStatusAsked(std::int64_t step) {
 void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
   // The recorder answers only for steps that are at least kMaxAhead steps old. These steps are
-  // acknowledged, so they can be read from the file. Newer steps are in the rings of their
-  // producers.
+  // acknowledged, so they can be read from the file. The roles that published newer steps still
+  // have these steps in their rings, and answer themselves.
   static_assert(kAcknowledgeEvery <= runtime::kMaxAhead);
   steps.count = std::min(steps.count, parts_.steps.next() - runtime::kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);
@@ -259,8 +262,7 @@ void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, 
     Answer(channel, truths.Get(step), now);
     answered = true;
   }
-  // If the recorder has been restarted itself, its ring is empty. The answer then comes from the
-  // file.
+  // If the recorder itself was restarted, its ring is empty. The answer then comes from the file.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
   AnswerStep(
@@ -307,8 +309,8 @@ void Recorder::OnLeave() {
     if (recording_ != nullptr) WriteEvents(std::max(newest, next - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
-    // The disk is full. If complete steps did not fit, an earlier write has reported this. A log
-    // without these incomplete steps is still valid.
+    // The disk has no room for the incomplete steps. The log is valid without them. If the disk had
+    // no room for complete steps, an earlier write has reported this.
   }
   TellWritten();
   log_.reset();

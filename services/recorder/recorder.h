@@ -1,10 +1,10 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log.
 // The recorder takes part in the lockstep: the world is at most kMaxAhead steps ahead of the log on
 // disk. So a fast run loses no message. The log has the events in the order of the steps, and
-// within a step in the order of the graph table. The order of arrival does not matter. So the logs
-// of equal runs differ only in the run id. A role that has been started again needs the messages of
-// recorded steps. The recorder answers its requests for these messages. If the recorder itself is
-// killed, another recorder continues its log.
+// within a step in the order of the graph table (services/graph.h). The order of arrival does not
+// matter. So the logs of equal runs differ only in the run id. A role that has been started again
+// needs the messages of recorded steps. The recorder answers its requests for these messages. If
+// the recorder itself is killed, another recorder continues its log.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,8 @@ class Recorder final : public runtime::Work {
  public:
   /// Treatment of an existing file.
   enum class Existing { kReplace, kResume };
-  /// Whether the log has the wall clock of each step. In real time the log always has it.
+  /// Whether the log has the wall clock of each step. In real time the log always has the wall
+  /// clock.
   enum class WallClock { kNo, kYes };
 
   /// With kReplace and a run id, the constructor replaces an existing file. With kReplace and no
@@ -46,10 +47,11 @@ class Recorder final : public runtime::Work {
   /// Continues the log in the file. @return false if the file has no complete scenario
   bool Resume();
   /// The steps of this run in the file.
-  /// @throws InputError if the file has fewer steps than were acknowledged
+  /// @throws InputError if the run is in lockstep, and the file lacks a step that the recorder had
+  ///     written (the progress of the run shows this)
   log::Remains ReadOwnRemains(const log::LogFront& front);
-  /// Stores the last steps of the log as inputs. A role that computes these steps again must then
-  /// publish the same bytes.
+  /// Stores the last steps of the log as inputs. If a role computes these steps again and publishes
+  /// other bytes, the recorder fails (Inputs::Keep).
   void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);

@@ -1,5 +1,5 @@
-// The world in real time: it moves the cars at every tick with the commands that have come. A car
-// without a command follows the fallback of vehicle_fallback.h.
+// The world in real time. In every step it moves the cars with the commands that have come. A car
+// whose command is missing follows the fallback of vehicle_fallback.h.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace fogline::world {
 
-/// All inputs of the world, each with its newest message, if any has come.
+/// All inputs of the world. Each input has its newest message if a message has come.
 struct WorldInputs {
   Heard<arbitration_t> host;
   Heard<follower_command_t> followers;
@@ -25,16 +25,17 @@ class FailsafeWorld {
 
   void Prepare() { world_.Prepare(); }
   const Output& Start(std::int64_t run_id) { return world_.Start(run_id); }
-  /// Continues after a step that an earlier process published.
+  /// Continues the run after a step that an earlier process published.
   /// @param minimal_risk cars that were in the minimal risk manoeuvre (bits of status_t), and stay
   ///     in it
   void Resume(const truth_t& truth, std::int8_t minimal_risk);
   /// The next step.
   const Output& Step(const WorldInputs& inputs);
 
-  /// Text about the fallback of the cars without a command; "" if every car has a command.
+  /// Text that describes the fallback of the cars whose commands are late or missing; "" if there
+  /// is no fallback.
   const std::string& fallback() const { return fallback_; }
-  /// Cars that are in a minimal risk manoeuvre, as bits of status_t.
+  /// The cars that are in a minimal risk manoeuvre, as bits of status_t.
   std::int8_t minimal_risk() const;
 
  private:

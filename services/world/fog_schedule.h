@@ -1,4 +1,5 @@
-// Time and density of the fog. The sensors themselves model the effects of the fog.
+// Time and density of the fog. The models of the sensors and of the driver compute the effects of
+// the fog.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +18,16 @@ struct Fog {
 /// Level of a profile at x in [0, 1). x is the share of the fog window that has passed.
 double FogLevel(FogProfile profile, double x);
 
-/// The fog of a scenario. Times are compared in whole microseconds. Otherwise the binary rounding
+/// The fog of a scenario. Times are compared in whole microseconds. In seconds, the binary rounding
 /// of 0.1 could decide whether a step belongs to the fog window. The end of the window does not
 /// belong to the window.
 class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);
 
-  /// Fog `utime` microseconds after the start of the run. The models beam and modes blend the
-  /// extinction of clear air and of fog linearly by the level. With the other models, the
-  /// visibility is the visibility of clear air.
+  /// The fog at `utime` microseconds after the start of the run. With the models beam and modes,
+  /// the extinction grows linearly with the level, from clear air at level 0 to the scenario's fog
+  /// at level 1. With the other models, the visibility is always the visibility of clear air.
   Fog At(std::int64_t utime) const;
 
  private:

@@ -1,5 +1,5 @@
-// Speed of the preceding car over time: the stimulus of the experiment. The preceding car does not
-// react to other cars.
+// Speed of the preceding car over time. This speed is the stimulus of the experiment. The preceding
+// car does not react to other cars.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace fogline::world {
 
-/// The preceding car's speed profile. The speeds of profile sumo come from services/models/traffic
-/// instead.
+/// The preceding car's speed profile. For profile sumo, the speeds come from
+/// services/models/traffic instead.
 class Leader {
  public:
   /// @throw std::invalid_argument if the profile is `recorded` and there are no speeds.
   explicit Leader(const LeadSection& lead);
 
-  /// Speed in m/s at a step, `time_s` after the start; never negative. Profile `recorded` uses the
-  /// step, the other profiles use the time. After the end of a profile, the car keeps the profile's
-  /// last speed.
+  /// Speed in m/s at this step; never negative. The step is at `time_s` after the start of the run.
+  /// Profile `recorded` uses `step`, the other profiles use `time_s`. After the end of a profile,
+  /// the car keeps the profile's last speed.
   double SpeedAt(std::int64_t step, double time_s) const;
 
  private:

@@ -33,7 +33,7 @@ double StrongestAnywhere(const RoadSection& road, double friction) {
   return StrongestBraking(friction, steepest);
 }
 
-// A braking that a profile states, and the field that states this braking.
+// A braking that a profile states, with the field that states it and the text about its value.
 struct StatedBraking {
   double braking_mps2 = 0;
   std::string field;

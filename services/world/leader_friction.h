@@ -1,4 +1,4 @@
-// The limit that the tyres of the preceding car set to its braking.
+// The strongest braking that the tyres of the preceding car allow.
 #pragma once
 
 #include "scenario/sections/scenario.h"
@@ -13,11 +13,10 @@ namespace fogline::world {
 /// on a slope of angle theta; on a level road this limit is mu g. mu is the friction of
 /// road.surface (services/models/vehicle). So this car and the vehicles behind it have the same
 /// friction. A point mass has no tyres. If all other cars are point masses, the preceding car is a
-/// point mass, too, and has no limit.
+/// point mass, too, and its braking has no limit.
 class LeaderFriction {
  public:
-  /// @throw InputError if the profile states a braking that is not possible at any place of this
-  /// road
+  /// @throw InputError if the profile states a braking that is possible nowhere on this road
   LeaderFriction(const Scenario& scenario, models::GradeProfile road);
 
   /// The acceleration of the profile, limited to the braking that friction allows at this place.

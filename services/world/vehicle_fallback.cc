@@ -5,7 +5,9 @@
 namespace fogline::world {
 namespace {
 
-// Emergency braking may hide the mode RECOVERING in the step in which a driver ends a manoeuvre.
+// Whether the driver has taken over. In the step in which a driver ends a manoeuvre, emergency
+// braking may replace the mode RECOVERING. Then only the authority of the human shows that the
+// driver has taken over.
 bool DriverHasTakenOver(const arbitration_t& command) {
   return command.mode == arbitration_t::RECOVERING ||
          (command.mode == arbitration_t::EMERGENCY_BRAKING && HumanIsEngaged(command.lambda_human));
@@ -72,8 +74,8 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   }
 }
 
-// A message without an acceleration for the car counts as missing. Otherwise such messages would
-// keep the state of the input at OK.
+// A message without an acceleration for this car counts as missing for this car. If such messages
+// counted as commands, the state of the car's input would stay OK, although no command comes.
 void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
                                    const Heard<follower_command_t>& followers) {
   FollowingCar& follower = followers_[car];
@@ -94,7 +96,8 @@ void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
       state, command_mps2, now.follower_speed_mps.at(car), now.follower_acceleration_mps2.at(car));
 }
 
-// At the first step without an acceleration, the last command is two periods old.
+// `steps` is the number of consecutive messages without an acceleration for the car. At the first
+// such message, the last command is two periods old.
 InputState VehicleFallback::StateAfter(std::int64_t steps) const {
   const double age = static_cast<double>(steps) + 1;
   if (age > std::max(health_.stale_periods, health_.lost_periods)) return InputState::kLost;

@@ -17,7 +17,8 @@
 
 namespace fogline::world {
 
-/// The fallback of one car, which depends on the state of the input with its commands:
+/// The fallback of one car. It depends on the state of the input that gives the commands of this
+/// car:
 ///
 ///     input          | acceleration of the car
 ///     ---------------|---------------------------------------------------------
@@ -44,14 +45,15 @@ class CarFallback {
 };
 
 /// The fallback of the host and of the following cars. The results are the inputs of World::Step().
-/// Each following car has its own fallback. If messages lack the acceleration of one car, only this
-/// car stops.
+/// Each following car has a separate fallback. So if the messages lack the acceleration of one car,
+/// only this car stops.
 ///
 /// If the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle stays in the
 /// manoeuvre. The vehicle follows the arbitrator's commands while they continue the manoeuvre. If
-/// no further commands come, or if another arbitrator commands something else, the vehicle carries
-/// out the manoeuvre by itself. Only a driver who was asked and has taken over ends the manoeuvre
-/// (mode RECOVERING, or EMERGENCY_BRAKING with authority of the human).
+/// no further commands come, or if a command does not continue the manoeuvre, the vehicle carries
+/// out the manoeuvre by itself. A manoeuvre that the arbitrator has commanded ends only if a driver
+/// takes over (mode RECOVERING, or EMERGENCY_BRAKING with authority of the human). If the host's
+/// last mode is locked (IsLocked()), no driver can end the manoeuvre.
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);
@@ -61,11 +63,12 @@ class VehicleFallback {
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
-  /// Begins the host's minimal risk manoeuvre, because the host was in this manoeuvre under an
-  /// earlier process of the world.
+  /// Begins the host's minimal risk manoeuvre. Call ResumeHost() if the host was in this manoeuvre
+  /// when an earlier process of the world ended.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// Begins the minimal risk manoeuvre of all following cars, because this process does not know
-  /// which of them were in the manoeuvre under the earlier process.
+  /// Begins the minimal risk manoeuvre of all following cars. Call ResumeFollowers() if a following
+  /// car was in this manoeuvre when an earlier process ended. All cars begin it, because this
+  /// process does not know which cars were in the manoeuvre.
   void ResumeFollowers(const truth_t& now);
 
   /// The command that the host carries out. While the vehicle stops by itself, the mode is
@@ -97,7 +100,8 @@ class VehicleFallback {
   void StepFollower(std::size_t car, const truth_t& now,
                     const Heard<follower_command_t>& followers);
 
-  /// State of a command that is missing in the last `steps` messages. The limits for inputs apply.
+  /// State of a command that is missing in the last `steps` messages. The limits for inputs
+  /// (HealthSection) apply.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;

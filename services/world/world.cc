@@ -28,7 +28,8 @@ models::GradeProfile RoadOf(const Scenario& scenario) {
   }
 }
 
-// The vehicle model; nullopt for a point mass. @param section name of `vehicle` in the scenario
+// The model of the vehicle; nullopt for a point mass. @param section name of `vehicle` in the
+// scenario
 std::optional<models::LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle,
                                                      const char* section, const Scenario& scenario,
                                                      const models::GradeProfile& road,
@@ -193,7 +194,8 @@ void World::FollowTraffic() {
   Obey(kPreceding, change_mps / step_s_);
 }
 
-// Places the preceding car where SUMO has it, without the rounding of the integration.
+// Places the preceding car exactly where SUMO has it, so that the rounding of the integration has
+// no effect.
 void World::PlaceByTraffic() {
   Car& preceding = cars_[kPreceding];
   preceding.motion = {ahead_->rear_m + world_.vehicle_length_m, ahead_->speed_mps};
@@ -216,7 +218,7 @@ void World::Integrate() {
     for (Car& car : cars_)
       car.motion = models::Advance(car.motion, car.acceleration_mps2, substep_s);
   }
-  // The exact speed of the profile, without the rounding of v + a t.
+  // Use the exact speed of the profile, because v + a t has a rounding error.
   if (profile_mps_) cars_[kPreceding].motion.speed_mps = *profile_mps_;
 
   for (Car& car : cars_) {

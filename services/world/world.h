@@ -1,5 +1,5 @@
-// The world moves the cars, counts the time of the run and has the complete true state. The
-// preceding car follows its profile, the other cars follow their commands.
+// The world moves the cars, counts the time of the run, and knows the complete true state. The
+// preceding car follows its profile. The other cars follow their commands.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +24,15 @@
 namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
-/// speed of its profile. While the profile brakes harder than friction allows, the car is faster
-/// than its profile (leader_friction.h). With profile sumo, the preceding car is the nearest of the
-/// cars that SUMO moves (services/models/traffic). So it may be another car than in the previous
-/// step. Each other car is a point mass or a vehicle. A point mass has exactly the commanded
-/// acceleration. A vehicle follows the command as far as it can (services/models/vehicle). The
-/// acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
-/// that have collided do not push each other. If the run does not end, these cars continue to
-/// follow their commands, and the gap between them is negative.
+/// speed of its profile. If the profile brakes harder than friction allows, the car is faster than
+/// its profile for some time (leader_friction.h). With profile sumo, the preceding car is the
+/// nearest car ahead of the host among the cars that SUMO moves (services/models/traffic). So the
+/// preceding car may be another car than in the previous step. Each other car is a point mass or a
+/// vehicle. A point mass has exactly the commanded acceleration. A vehicle follows the command as
+/// far as it can (services/models/vehicle). The acceleration of every car is constant within a step
+/// (services/models/vehicle/motion.h). Cars that have collided do not push each other. If the run
+/// does not end, these cars continue to follow their commands, and the gap between them is
+/// negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
@@ -42,12 +43,12 @@ class World {
   ///     allow, or the leader comes from SUMO and this machine has no SUMO
   explicit World(const Scenario& scenario);
 
-  /// Copies share the simulation of SUMO.
+  /// Whether the leader comes from SUMO. If it does, copies share the simulation of SUMO.
   static bool CopiesShareState(const Scenario& scenario) {
     return scenario.lead.profile == LeadProfile::kSumo;
   }
 
-  /// Does the part of the next Start() that can take long: SUMO loads its network.
+  /// Does the part of the next Start() that can take a long time: SUMO loads its network.
   /// @throw InputError if the leader comes from SUMO, and SUMO refuses its network or routes
   void Prepare();
 
@@ -72,8 +73,8 @@ class World {
   ///     commands than following cars.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
 
-  /// Ends the run. Another object can then begin a run: a process can have only one simulation of
-  /// SUMO.
+  /// Ends the run. A process can have only one simulation of SUMO, so another object can begin a
+  /// run with SUMO only after End().
   void End();
 
   /// The last published step.

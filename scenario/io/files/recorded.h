@@ -12,8 +12,9 @@ namespace fogline {
 
 /// Fills lead.recorded.speeds_mps with the speeds at start_s + k step_s, k = 0 to steps - 1, by
 /// linear interpolation between the file's rows. A relative file name is relative to `folder`.
-/// `root` and `sources` are the tree and the sources of the scenario's text. The places of mistakes
-/// refer to this tree.
+/// `root` is the JSON tree of the scenario, and `sources` are the texts from which this tree was
+/// read: the scenario file and the overrides. An error names a place in one of these texts or in
+/// the recorded file.
 /// @throws ScenarioError if the file cannot be read, lacks a column, or does not span the run, or
 ///     if a cell is not a number, a time does not ascend, or a speed is out of range
 void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,

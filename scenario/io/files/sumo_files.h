@@ -10,13 +10,15 @@
 
 namespace fogline {
 
-/// Fills lead.sumo.net and lead.sumo.routes from their files, if a file is named and the list is
-/// empty. A relative file name is relative to `folder`. The length of a text in a scenario is
-/// limited, so a longer line is split at a space. In XML, a line break means the same as a space.
-/// `root` and `sources` are the tree and the sources of the scenario's text. The places of mistakes
-/// refer to this tree.
-/// @throws ScenarioError if a file cannot be read, is not UTF-8, has more lines than the list may
-/// have, or has more characters without a space than a text may have
+/// Fills lead.sumo.net and lead.sumo.routes with the lines of their files. A list is filled only if
+/// it is empty and its file is named. A relative file name is relative to `folder`. The length of a
+/// text in a scenario is limited, so a longer line is split at a space. In XML, a line break means
+/// the same as a space.
+/// @param root the JSON tree of the scenario, which has the place of each value in the sources
+/// @param sources the texts from which `root` was read: the scenario file and the overrides
+/// @throws ScenarioError if a file cannot be read, is not UTF-8, has a control character within a
+/// line, has more lines than the list may have, or has more characters without a space than a text
+/// may have
 void ResolveSumo(const std::filesystem::path& folder, const JsonValue& root,
                  const std::vector<Source>& sources, Scenario& scenario);
 

@@ -4,14 +4,17 @@
 
 namespace fogline::conflict {
 
-/// A range with its stated standard deviation. All numbers are finite, also if `valid` is false.
+/// A range with its stated standard deviation. This standard deviation should not grow with the
+/// errors of the range, because a larger standard deviation hides a conflict. All numbers are
+/// finite, even if `valid` is false.
 struct StatedRange {
   bool valid = false;  // false: no value in this step; other fields have no meaning
   double range_m = 0;  // m
-  double std_m = 0;    // m, above 0; nominal: a value that grows with errors would hide conflict
+  double std_m = 0;    // m, above 0
 };
 
-/// The evidence of one step: two sensors, and a third witness.
+/// The evidence of one step: the ranges that radar and LiDAR measure, and the range that the filter
+/// predicts.
 struct Evidence {
   StatedRange radar;
   StatedRange lidar;
@@ -36,20 +39,21 @@ class ConflictMeasure {
 };
 
 /// Blame of each sensor in [0, 1], similar to a probability. Both values can be 0 (no conflict, or
-/// no witness), and both can be high. The sum has no meaning.
+/// no prediction), and both can be high. Their sum has no meaning.
 struct Blame {
   double radar = 0;
   double lidar = 0;
-  /// Above 0 if the radar is more wrong than the LiDAR, below 0 if it is less wrong. A measure can
-  /// set this number so that it still tells the two sensors apart if both blames round to 1.
+  /// Above 0 if the radar is more wrong than the LiDAR, below 0 if the LiDAR is more wrong. If both
+  /// blames round to 1, their difference is 0 and does not show which sensor is more wrong. So a
+  /// measure can set this number in another way.
   double radar_excess = radar - lidar;
 
   friend bool operator==(const Blame&, const Blame&) = default;
 };
 
-/// A measure that finds the sensor that is wrong. The values of radar and LiDAR alone are not
-/// sufficient for this, so these measures use the prediction, too. The rules of ConflictMeasure (no
-/// clock, no shared state, no allocation in Step) apply.
+/// A measure that finds the sensor that is wrong. The values of radar and LiDAR alone do not show
+/// which sensor is wrong, so a measure of blame also uses the prediction. The rules of
+/// ConflictMeasure (no clock, no shared state, no allocation in Step) apply.
 class BlameMeasure {
  public:
   virtual ~BlameMeasure() = default;

@@ -36,13 +36,14 @@ ConflictPtr MakeMomentary(const Parameters& parameters, Score score) {
   return std::make_unique<Momentary<Score>>(parameters, std::move(score));
 }
 
-// Makes a measure that is a function of the step's disagreement.
+// Makes a measure whose score is a function of the step's disagreement.
 template <auto kScore>
 ConflictPtr OfDisagreement(const Parameters& parameters) {
   return MakeMomentary(parameters, [](const Disagreement& d) { return kScore(d); });
 }
 
-// Makes a measure that is a function of the two readings on bins.
+// Makes a measure whose score is a function of both readings. The readings are represented as
+// masses on bins (binned_belief.h).
 template <auto kScore>
 ConflictPtr OnBins(const Parameters& parameters) {
   return MakeMomentary(parameters, [parameters](const Disagreement& d) {
@@ -50,7 +51,7 @@ ConflictPtr OnBins(const Parameters& parameters) {
   });
 }
 
-// Makes a measure that is a method of ConsonantBeliefs.
+// Makes a measure whose score is the result of a method of ConsonantBeliefs.
 template <auto kScore>
 ConflictPtr OnConsonant(const Parameters& parameters) {
   return MakeMomentary(parameters, [beliefs = ConsonantBeliefs(parameters.levels)](

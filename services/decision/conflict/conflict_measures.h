@@ -10,8 +10,8 @@
 
 namespace fogline::conflict {
 
-/// One row of a table: a measure of conflict or of blame. `Measure` is ConflictMeasure or
-/// BlameMeasure.
+/// One measure: a row of the table ConflictMeasures() or of the table BlameMeasures(). `Measure` is
+/// ConflictMeasure for a measure of conflict, and BlameMeasure for a measure of blame.
 template <class Measure>
 struct MetricRow {
   std::string_view name;  // name in the scenario (scenario/sections/decision.h)

@@ -7,23 +7,23 @@
 
 namespace fogline::conflict {
 
-/// Modes of a LiDAR: it measures the range of the car (kClean), or the range of the fog or of
-/// another object (kFogReturn), or it almost never has an echo (kDropout).
+/// Modes of a LiDAR. In kClean, the LiDAR measures the range of the car. In kFogReturn, it measures
+/// the range of the fog or of another object. In kDropout, it almost never has an echo.
 enum class LidarMode { kClean, kFogReturn, kDropout };
 inline constexpr int kLidarModes = 3;
 
 struct ConflictParameters {
   // ---- Difference ----
 
-  /// Mean of radar - LiDAR without a fault, m, any finite value. It is the offset of the mounting
-  /// points that remains after calibration. Every measure except `doc` subtracts the offset. The
-  /// paper defines `doc` without an offset.
+  /// Mean of radar - LiDAR if no sensor has a fault, m, any finite value. It is the part of the
+  /// offset between the mounting points that calibration has not removed. Every measure except
+  /// `doc` subtracts the offset. The paper defines `doc` without an offset.
   double offset_m = 0;
-  /// Rule for a step without radar or LiDAR value, for every measure except the measures of LiDAR
-  /// modes. Such a step repeats the last difference, is skipped, or counts as a difference of
-  /// `missing_conflict_m`.
+  /// Rule for a step in which a sensor has no value. The rule applies to every measure except the
+  /// measures of LiDAR modes. A step without a value repeats the last difference, is skipped, or
+  /// counts as a difference of `missing_conflict_m`.
   MissingLidar missing = MissingLidar::kHold;
-  /// With the rule `conflict`, a missing value counts as this difference, m, above 0. The
+  /// If `missing` is kConflict, a missing value counts as this difference, m, above 0. The
   /// scenario's section `arbitrator` has the same default.
   double missing_conflict_m = 10;
   /// Standard deviations, m, above 0. They are used if a missing value counts as conflict and the
@@ -49,8 +49,8 @@ struct ConflictParameters {
   /// Number of steps that the GLR test looks back for a jump, at least 1; 20 steps are 2 s at 10
   /// Hz. Basseville & Nikiforov 1993, 2.4.3, also limit this number, because of the computing cost.
   int glr_window_steps = 20;
-  /// Number of steps whose residuals give the NIS blame (third_witness.h), at least 1. With 1, the
-  /// blame depends only on the NIS of the step.
+  /// Number of steps whose residuals give the NIS blame (third_witness.h), at least 1. If this
+  /// number is 1, the blame depends only on the NIS of the present step.
   int blame_window_steps = 1;
 
   // ---- Beliefs on bins ----
@@ -61,15 +61,16 @@ struct ConflictParameters {
   /// Number of bins of the frame (all ranges that are possible), at least 2. The default of 500
   /// bins of 0.5 m covers 250 m.
   int frame_bins = 500;
-  /// Reliability eta of each sensor, in (0, 1): the mass that stays on the bins (Shafer 1976,
-  /// discounting).
+  /// Reliability eta of each sensor, in (0, 1): the share of its belief that stays on the bins. The
+  /// whole frame gets the rest (Shafer 1976, discounting).
   double radar_reliability = 0.95;
   double lidar_reliability = 0.95;
 
   // ---- Consonant beliefs ----
 
-  /// Number of nested intervals of equal mass that replace the belief density, at least 1, at most
-  /// kMostLevels. The scores with 20 levels differ from those with 40 levels by at most 0.03.
+  /// A consonant belief is a density over nested intervals (consonant_belief.h). `levels` is the
+  /// number of intervals of equal mass that replace the density, at least 1, at most kMostLevels.
+  /// With 20 levels, a score differs by at most 0.03 from the score with 40 levels.
   int levels = 20;
 
   // ---- Sequential tests ----
@@ -108,8 +109,8 @@ struct ConflictParameters {
   /// Length in m, above 0. A fog echo lies beyond r* by this length times a random number with the
   /// distribution Beta(2, 20) (Hahner et al. 2021).
   double fog_scatter_m = 10;
-  /// Share of fog returns that can be anywhere in the LiDAR's range, in (0, 1). Such an echo may be
-  /// a mixture of the echoes of car and fog. Our choice.
+  /// Share of the echoes in mode kFogReturn that can lie anywhere in the LiDAR's range, in (0, 1).
+  /// Such a stray echo may be a mixture of the echoes of car and fog. Our choice.
   double stray_share = 0.1;
   /// Range over which stray echoes are uniformly distributed, m, above 0.
   double stray_range_m = 250;

@@ -1,6 +1,6 @@
-// The difference of the two sensors, and its substitute if a sensor has no value. All measures of
-// two sensors except lidar_modes use DisagreementSource, so that they treat missing values in the
-// same way.
+// The difference between radar and LiDAR, and the value that replaces the difference if a sensor
+// has no value. All measures that compare only radar and LiDAR use DisagreementSource, except
+// lidar_modes. So these measures treat missing values in the same way.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ struct Disagreement {
   double lidar_std_m;
 
   /// S = s1^2 + s2^2, m2, with the standard deviations s1 and s2 of radar and LiDAR: the variance
-  /// of d if both sensors have the stated noise. The filter's prediction is not used for d, so its
-  /// covariance is not in S.
+  /// of d if both sensors have the stated noise. d does not depend on the filter's prediction, so S
+  /// does not contain the variance of this prediction.
   double variance_m2() const { return radar_std_m * radar_std_m + lidar_std_m * lidar_std_m; }
   /// d/sqrt(S): standard normal without a fault.
   double standardised() const;
@@ -27,15 +27,15 @@ struct Disagreement {
 
 class DisagreementSource {
  public:
-  /// Treatment of ConflictParameters::offset_m: it is subtracted from the difference, or not.
+  /// Whether ConflictParameters::offset_m is subtracted from the difference.
   enum class Offset { kSubtracted, kKept };
 
   explicit DisagreementSource(const ConflictParameters& parameters,
                               Offset offset = Offset::kSubtracted);
 
-  /// The disagreement of this step. The result for a step without radar or LiDAR value depends on
-  /// the rule:
-  ///   hold      the last measured disagreement; before the first one nullopt
+  /// The disagreement of this step. If a sensor has no value in this step, the result depends on
+  /// the rule (ConflictParameters::missing):
+  ///   hold      the last measured disagreement; nullopt if no disagreement has been measured
   ///   skip      nullopt
   ///   conflict  d = missing_conflict_m, with the last stated standard deviations
   std::optional<Disagreement> Next(const Evidence& evidence);
@@ -49,7 +49,7 @@ class DisagreementSource {
   double nominal_radar_std_m_;
   double nominal_lidar_std_m_;
 
-  // Last stated standard deviations.
+  // The standard deviations that the sensors have stated last; nominal values before that.
   double radar_std_m_;
   double lidar_std_m_;
   std::optional<Disagreement> measured_;  // the last measured disagreement

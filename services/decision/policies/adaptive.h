@@ -13,10 +13,10 @@ namespace fogline::policies {
 ///
 /// with the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
 /// host's acceleration a. The gains k_A, k_M, k_C, k_B and the limits least, most are fields of the
-/// scenario (AdaptiveSection); DoC_th on the right is the scenario's threshold. The threshold is
-/// higher for a driver who is not ready, and lower if the fog is dense, if the follower is close,
-/// or if the host already brakes. The formula is ours; the paper suggests such a threshold (future
-/// work 3).
+/// scenario (AdaptiveSection). DoC_th on the right side is the scenario's threshold. The threshold
+/// is higher for a driver who is not ready. It is lower if the fog is dense, if the follower's TTC
+/// is short, or if the host already brakes. The formula is our choice; the paper suggests a
+/// threshold that moves with the situation (future work 3).
 class Adaptive final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -14,7 +14,7 @@ constexpr double kPercentile = 0.95;  // percentile of take-over times, after Ma
 
 }  // namespace
 
-// Let c be the limit; availability.h has the other symbols. The equation
+// c is the limit of the deceleration; availability.h explains the other symbols. The equation
 //
 //     (w + b t)^2 = 2 c (s - w t - b t^2/2)
 //

@@ -16,18 +16,19 @@ namespace fogline::policies {
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// If the driver is available, the policy is the paper's rule. A driver who already drives is
-/// available. A driver in a host without a follower is available, too. Any other driver is
-/// available if the take-over time is less than the time until the follower has to brake harder
-/// than comfort_mps2, and less than horizon_s. The take-over time here is the 95th percentile of
-/// its distribution, plus unready_s times (1 minus the driver's readiness). If the driver is not
-/// available, the automation continues to drive. Marberger et al. 2018 define availability as the
-/// time budget minus the required time.
+/// If the driver is available, the policy decides as the paper does: the human drives if the DoC is
+/// at least the threshold. A driver who already drives is available. A driver in a host without a
+/// follower is available, too. Any other driver is available if the take-over time is short enough.
+/// It must be less than horizon_s, and less than the time until the follower has to brake harder
+/// than comfort_mps2. The take-over time here is the 95th percentile of its distribution, plus
+/// unready_s times (1 minus the driver's readiness). If the driver is not available, the automation
+/// continues to drive. Marberger et al. 2018 define availability as the time budget minus the
+/// required time.
 ///
 /// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion excludes
-/// this sensor in every step, because it does not know whether the driver is available. It also
-/// does so while the driver drives, although the track is then not used. So when the automation
-/// drives again, it has a usable track from the first step on.
+/// this sensor in every step, because it does not know whether the driver is available. The fusion
+/// also excludes this sensor while the driver drives, although the automation does not use the
+/// track then. So when the automation drives again, it has a usable track from its first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -8,13 +8,14 @@
 namespace fogline::policies {
 
 /// The human drives while P C_a >= (1 - P) C_h, with the expected costs C_a and C_h below. This
-/// condition is equivalent to P >= C_h/(C_h + C_a). The quotient is the threshold of the step. P is
-/// the probability that the automation is deceived; the policy uses the DoC as P. The DoC is a
-/// probability with measure lidar_modes and measure_scale probability
-/// (services/decision/conflict/over_time/lidar_modes.h). With the paper's z, the DoC is only a
-/// steep function of the conflict. The expected costs depend on the driver's readiness A, the
-/// visibility MOR and the follower's time to collision TTC. All other words are fields of the
-/// scenario (BayesSection), without their endings _cost and _s: `human` is human_cost, for example.
+/// condition is equivalent to P >= C_h/(C_h + C_a), so C_h/(C_h + C_a) is the threshold of the
+/// step. P is the probability that the automation is deceived; the policy uses the DoC as P. With
+/// measure lidar_modes and measure_scale probability, the DoC is a probability
+/// (services/decision/conflict/over_time/lidar_modes.h). With the paper's conflict z, the DoC is
+/// only a steep function of z. The expected costs depend on the driver's readiness A, the
+/// visibility MOR and the follower's time to collision TTC. All other words in the equations are
+/// fields of the scenario (BayesSection). The endings _cost and _s of these fields are left out:
+/// `human` stands for human_cost, for example.
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
 ///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation

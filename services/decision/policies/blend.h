@@ -9,7 +9,7 @@ namespace fogline::policies {
 
 /// The human's authority is lambda_H = clip((DoC - from)/width, 0, 1). Both sides drive, and the
 /// human's share grows with the conflict. `from` and `width` are fields of BlendSection. The
-/// reported threshold is the DoC at which the human has half of the authority, at most 1.
+/// reported threshold is the DoC at which the human has half of the authority, but at most 1.
 class Blend final : public EngagementPolicy {
  public:
   static constexpr bool kShares = true;

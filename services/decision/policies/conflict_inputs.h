@@ -10,12 +10,13 @@
 
 namespace fogline::policies {
 
-/// The parameters of the conflict measures. Some of them are fields of `section` (section
+/// The parameters of the conflict measures. Some parameters are fields of `section` (section
 /// `arbitrator` of the scenario, with its `transfer`). All other parameters have the defaults of
 /// services/decision/conflict/conflict_parameters.h.
 conflict::ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
-/// The row of the measure of conflict, or of blame, that the scenario has chosen.
+/// The table row of the measure that the scenario has chosen: a measure of conflict, or a measure
+/// of blame.
 const conflict::ConflictMeasureRow& RowOf(MeasureChoice choice);
 const conflict::BlameMeasureRow& RowOf(BlameChoice choice);
 
@@ -34,9 +35,9 @@ inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
 /// prediction is not valid in the step that starts a track, and in a step without any value.
 ///
 /// If the filter estimates the noise itself (fusion.adaptive_noise), TRACK does not contain the
-/// noise that the filter has used. The variance is then predicted from the covariance of the
-/// previous step, as in the filter. So there is no prediction if the track of the previous step is
-/// missing.
+/// noise that the filter has used. The variance of the prediction is then computed from the
+/// covariance of the previous step, as in the filter. So if the track of the previous step is
+/// missing, there is no prediction.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario);

@@ -1,5 +1,6 @@
 // Policy `isolate`: the automation drives without the sensor that is to blame. The policy is a
-// reference: hand-overs are useful only if they give a better result than `isolate`.
+// reference for hand-overs: they are useful only if their result is better than the result of
+// `isolate`.
 #pragma once
 
 #include "services/decision/policies/isolation.h"

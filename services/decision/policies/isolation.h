@@ -9,9 +9,9 @@
 
 namespace fogline::policies {
 
-/// Excludes the sensor that is more wrong if its blame is at least blame_threshold. The scenario
-/// chooses the measure of blame. If both sensors are equally wrong, no sensor is excluded. So at
-/// least one sensor is always used.
+/// Excludes at most one sensor: the sensor that is more wrong than the other sensor, and whose
+/// blame is at least blame_threshold. The scenario chooses the measure of blame. If both sensors
+/// are equally wrong, no sensor is excluded.
 class Isolation {
  public:
   explicit Isolation(const ArbitratorSection& section)

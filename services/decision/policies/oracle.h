@@ -1,4 +1,5 @@
-// Policy `oracle`: the best possible isolation. The policy uses the true gap, which no car knows.
+// Policy `oracle`: the best possible selection of radar or LiDAR. The policy uses the true gap for
+// this selection. No car knows the true gap.
 #pragma once
 
 #include <cmath>
@@ -7,9 +8,10 @@
 
 namespace fogline::policies {
 
-/// Selects the best sensor by the truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA
-/// 2022). If both sensors have a value, the fusion uses only the value nearer to the true gap. If
-/// both values are equally near, it uses the radar's value. The automation always drives.
+/// Uses the true gap to select the better sensor, as in the fusion-fault test of Zhong et al.
+/// (FusED, ISSTA 2022). If both sensors have a value, the fusion uses only the value nearer to the
+/// true gap. If both values are equally near, the fusion uses the radar's value. The automation
+/// always drives.
 class Oracle final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsTrueGap = true;

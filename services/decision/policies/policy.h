@@ -16,8 +16,8 @@
 
 namespace fogline::policies {
 
-/// Which sensors the fusion uses in this step. The values of a sensor that is not selected are
-/// compared with the prediction, but do not correct the filter.
+/// The sensors that the fusion uses in this step. If a sensor is not selected, the fusion compares
+/// its values with the prediction, but these values do not correct the filter.
 struct SensorSelection {
   bool radar = true;
   bool lidar = true;
@@ -41,7 +41,8 @@ struct Surroundings {
 
   /// 1/TTC of the follower in 1/s; 0 without a follower, or if its gap does not close.
   double ClosingRate(double host_speed_mps) const {
-    // A gap below kTouching_m counts as kTouching_m. At this gap, the bumpers nearly touch.
+    // A gap below kTouching_m counts as kTouching_m, because the quotient must stay finite. At this
+    // gap, the bumpers nearly touch.
     constexpr double kTouching_m = 0.1;
     if (!followed) return 0;
     return std::max(0.0, follower_speed_mps - host_speed_mps) /
@@ -65,18 +66,18 @@ struct ArbitratorView {
 struct EngagementRequest {
   double lambda_human = 0;  // wanted authority of the human, in [0, 1]
   double threshold = 1;     // the human is wanted while DoC >= threshold
-  /// true: the request passes without delay. false: the request is the result of the comparison of
-  /// DoC and threshold, and a hysteresis may delay it.
+  /// If true, the request passes without delay. If false, the request is the result of the
+  /// comparison of DoC and threshold, and a hysteresis may delay the request.
   bool firm = true;
 };
 
-/// The request of the paper's rule with this threshold: the human drives unless DoC < threshold. So
-/// the human also drives if the DoC is NaN.
+/// The request of the paper's rule with this threshold: the automation drives only if
+/// DoC < threshold. So the human drives if the DoC is NaN.
 inline EngagementRequest Compare(double doc, double threshold) {
   return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
 }
 
-/// The request of a policy under which the automation drives at any conflict.
+/// The request that the automation drives, whatever the conflict is.
 inline EngagementRequest StayAutomated(double threshold) {
   return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
@@ -98,20 +99,21 @@ class EngagementPolicy {
   /// the regular inputs. A policy that needs such an input redefines its constant.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. A
-  /// driver who must be asked is asked for any share above 0. After the take-over, the driver has
+  /// Whether the policy shares authority: its requests can lie between 0 and 1. If the driver must
+  /// be asked, any share above 0 causes a request to take over. After the take-over, the driver has
   /// the share that the policy requests.
   static constexpr bool kShares = false;
-  /// Whether the policy's decisions depend on the scenario's threshold. A policy with its own rule
-  /// that does not use the threshold redefines this constant.
+  /// Whether the policy's decisions depend on the scenario's threshold. A policy redefines this
+  /// constant if its rule is kOwn and does not use the threshold.
   static constexpr bool kUsesThreshold = true;
   /// The rule of Decide(). A policy with a simple rule redefines this constant.
   static constexpr Rule kRule = Rule::kOwn;
 
   virtual ~EngagementPolicy() = default;
 
-  /// The sensors that the fusion uses in this step. The fusion calls this function only if the
-  /// policy overrides it, once per step, after the filter's prediction if there is a track.
+  /// The sensors that the fusion uses in this step. The fusion calls this function once per step,
+  /// but only if the policy overrides it. If there is a track, the call comes after the filter's
+  /// prediction.
   virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
 
   /// The policy's decision in the arbitrator. The arbitrator calls this function once per decision,

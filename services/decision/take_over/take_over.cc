@@ -24,8 +24,8 @@ MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
 }
 
-/// Returns a_P in m/s2. A person overrides only if the person's offer is at most a_P. nullopt if no
-/// person can override.
+/// Returns a_P in m/s2, or nullopt if no person can override. A person overrides only if the
+/// person's offer is at most a_P.
 std::optional<double> OverrideOf(const PersonSection& person) {
   if (!person.drives || person.override_by == OverrideBy::kNone) return std::nullopt;
   const models::PedalResponse pedals(person);
@@ -128,14 +128,14 @@ void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
   transferred_ = step;
   overridden_ = row.event == TakeOverEvent::kOverride;
   if (row.state != TakeOverState::kAutomated) return;
-  // The driver has got this authority without a request. The last request, if there was one, has
-  // ended earlier.
+  // The driver has got this authority without a request. If there was a request before, it has
+  // already ended.
   request_.reset();
   awaits_answer_ = false;
 }
 
 // Prepares a new manoeuvre after a person with the authority has gone. The manoeuvre begins from
-// the person's last command. An earlier manoeuvre of this run has no effect on it.
+// the person's last command. An earlier manoeuvre of this run has no effect on the new manoeuvre.
 void TakeOver::LoseAuthority() {
   request_.reset();
   awaits_answer_ = true;

@@ -1,5 +1,5 @@
-// Take-over on request: the policy's engagement request for the human becomes a request to the
-// driver. If the driver answers late or never, a minimal risk manoeuvre stops the car.
+// Take-over on request: if the policy wants the human to drive, the driver gets a request to take
+// over. If the driver answers late or never, a minimal risk manoeuvre stops the car.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct TakeOverInputs {
   double human_mps2 = 0;           // the driver's offer
   double readiness = 0;            // the driver's readiness, in [0, 1]
   double speed_mps = 0;            // speed of the host
-  double applied_mps2 = 0;         // last sent command; before the first, the applied acceleration
+  double applied_mps2 = 0;         // last command sent; before any command, the host's acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
   // Inputs of a person who drives; always false for the model of a driver.
   bool acknowledged = false;  // the driver answers now
@@ -48,13 +48,14 @@ inline constexpr double kOverdueFactor = 2.0;
 
 /// The state machine of take_over_table.h, with these conditions and decelerations. t is the time
 /// in s since the request, T the time from the request to the driver's answer, a_A and a_H the
-/// offers of automation and driver, a' the last sent command, h the step, and j = jerk_mps3:
+/// offers of automation and driver, a' the last command that was sent, h the length of a step, and
+/// j = jerk_mps3:
 ///
 ///     acknowledgement  t >= T, if T <= lead_s. T is drawn in the step of the request
 ///                      (take_over_time.h). T is infinite with the probability
 ///                      absent_probability.
 ///     transfer         t >= T and readiness >= required_readiness
-///     override         only for a person, and only with override_by brake: a_H <= a_P, a_H < a',
+///     override         only if a person drives, and override_by is "brake": a_H <= a_P, a_H < a',
 ///                      and readiness >= required_readiness
 ///     escalation       t >= escalation_s
 ///     deadline         t >= lead_s
@@ -64,22 +65,22 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      second stage.
 ///
 /// So the target deceleration of the manoeuvre is at least that of the automation, but at most
-/// emergency_deceleration_mps2. The limit of the jerk, and the smooth release before the car
-/// stands, can make the command smaller. A driver who is not absent is late if and only if T is
-/// above lead_s. Between acknowledgement and transfer the automation drives for at least one step.
-/// Only a driver who overrides, or who answers during the manoeuvre, gets authority without such a
-/// step.
+/// emergency_deceleration_mps2. The actual deceleration can be smaller, because the jerk is
+/// limited, and because the brake is released smoothly before the car stands. A driver who is not
+/// absent is late if T is above lead_s, and only then. Between acknowledgement and transfer the
+/// automation drives for at least one step. Only a driver who overrides, or who answers during the
+/// manoeuvre, gets authority without such a step.
 ///
-/// If the scenario has a person who drives, no random number is drawn: T is the time of the first
-/// step after the request in which the person answers. A return to the automation has a further
-/// condition: the person gives the authority back.
+/// If the scenario has a person who drives, no random number is drawn: T is the time from the
+/// request to the first later step in which the person answers. A return to the automation has a
+/// further condition: the person gives the authority back.
 ///
-/// With when_gone until_back, the manoeuvre also begins when a person who has the authority is gone
-/// (readiness 0). TakeOver then waits for a new answer of the person, as after a request.
+/// If when_gone is "until_back", the manoeuvre also begins when a person who has the authority is
+/// gone (readiness 0). TakeOver then waits for a new answer of the person, as after a request.
 ///
-/// A person overrides with a brake that is at override_pedal or beyond, and that brakes harder than
-/// the last sent command a'. a_P is the acceleration of a brake at override_pedal with the throttle
-/// released (services/models/driver/pedal_response.h).
+/// A person overrides with the brake pedal under two conditions. The pedal is at override_pedal or
+/// beyond, and it brakes harder than the last command a'. a_P is the acceleration that belongs to a
+/// brake pedal at override_pedal and a released throttle (services/models/driver/pedal_response.h).
 class TakeOver {
  public:
   /// @throw InputError if the released pedals already brake as hard as a brake at override_pedal
@@ -91,16 +92,16 @@ class TakeOver {
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request; empty if there has been no request. Also empty after an override without a
-  /// request, and after a person who had the authority has left. The field `effective` is always
-  /// empty.
+  /// The last request; empty if there has been no request. The result is also empty after an
+  /// override without a request, and after a person who had the authority has left. The field
+  /// `effective` is always empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// Whether a manoeuvre is running, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
   /// Whether a manoeuvre has begun in this run, even if the driver has ended this manoeuvre.
   bool manoeuvred() const { return manoeuvre_.begun(); }
-  /// Whether the driver took the authority by an override when it last took it; false again after a
-  /// return to the automation.
+  /// Whether the driver's last take-over was an override; false again after a return to the
+  /// automation.
   bool overridden() const { return overridden_; }
 
  private:
@@ -131,7 +132,7 @@ class TakeOver {
   bool awaits_answer_ = false;     // whether a person's answer is expected
   std::int64_t answer_step_;       // step of the answer; may lie in the future
   bool in_time_ = false;           // whether the driver answers within lead_s
-  std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
+  std::int64_t overdue_step_ = 0;  // last step in which this stage of the manoeuvre is not overdue
   std::optional<std::int64_t> transferred_;  // step in which the driver got the authority
   bool overridden_ = false;
   TakeOverOutcome out_;

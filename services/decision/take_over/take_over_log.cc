@@ -17,8 +17,9 @@ const TakeOverStateInfo* StateOf(std::int8_t mode) {
 }
 
 /// The text that the table has for the change from the mode `from` to the mode `to`. Some changes
-/// are not in the table, because the driver need not be asked, or because inputs have failed in
-/// real time. Such a change gets a separate text.
+/// are not in the table. Examples are the transfer to the human in a run without requests, and a
+/// change after inputs have failed in real time. This function itself has the texts for these
+/// changes.
 std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   const TakeOverStateInfo* a = StateOf(from);
   const TakeOverStateInfo* b = StateOf(to);
@@ -34,15 +35,15 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   return "change of state";
 }
 
-/// Whether the automation drives without an answer of the driver: there is no request, or the
-/// driver has not answered it. Only an override leads from such a mode to RECOVERING.
+/// Whether the automation drives, and the driver has not answered: there is no request, or the
+/// request has no answer yet. Only an override leads from one of these modes to RECOVERING.
 bool IsUnanswered(std::int8_t mode) {
   return mode == arbitration_t::AUTOMATION || mode == arbitration_t::REQUEST ||
          mode == arbitration_t::REQUEST_URGENT;
 }
 
-/// Whether such a command occurs only in runs with requests. This is true if the mode is a state of
-/// a request, or if the mode names the side with less authority.
+/// Whether this command can occur only in a run with requests. This is true if the mode is a state
+/// of a request or of its manoeuvre, or if the mode names the side with less authority.
 bool ShowsRequests(const arbitration_t& command) {
   if (command.mode == arbitration_t::AUTOMATION) return HumanDrives(command.lambda_human);
   if (command.mode == arbitration_t::HUMAN) return !HumanDrives(command.lambda_human);
@@ -109,8 +110,8 @@ void TakeOverLog::Reveal(const arbitration_t& command) {
   last_->mode = DecidedMode(command);
   began_in_request_ =
       last_->mode != arbitration_t::AUTOMATION && last_->mode != arbitration_t::HUMAN;
-  // Emergency braking does not replace the modes of a manoeuvre. So the manoeuvre begins in this
-  // step.
+  // If a manoeuvre follows emergency braking, the manoeuvre begins in this step. It did not run
+  // before, because the mode of emergency braking never replaces a mode of a manoeuvre.
   if (!InEmergency(last_sent_) || !InMinimalRisk(command.mode)) return;
   entries_.push_back({.step = command.header.step,
                       .earliest_step = earliest_,
@@ -129,8 +130,9 @@ std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
   if (hidden_ || !InEmergency(command.mode)) return command.mode;
   if (last_ && asks_) {
     if (command.mode == arbitration_t::EMERGENCY_BRAKING) return last_->mode;
-    // A collision warning replaces only AUTOMATION and HUMAN. So if the last state was RECOVERING,
-    // the state is now HUMAN, which follows RECOVERING.
+    // The mode of a collision warning replaces only the modes AUTOMATION and HUMAN. So the decided
+    // mode is one of these two modes. After RECOVERING it is HUMAN, because HUMAN follows
+    // RECOVERING.
     if (last_->mode == arbitration_t::AUTOMATION || HumanDrives(last_->mode)) {
       return HumanDrives(last_->mode) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
     }
@@ -213,7 +215,8 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   if (state->state == TakeOverState::kDemand) {
     requests_.push_back({.requested = command.header.step});
   }
-  // There may be no open request to update.
+  // The change of state may belong to no request, for example after an override without a request
+  // (unasked_). Then no request notes it.
   if (requests_.empty() || unasked_) return;
   requests_.back().Enter(state->state, command.header.step);
   // Enter() has set `transferred`. But in kRecovering the driver's share may still be small. So the

@@ -1,6 +1,6 @@
-// The events of a run as a data recorder would store them (UN R157, 8: DSSAD). The events are
-// computed from the commands of the host, which every log contains. Every change of mode is an
-// event, also in runs whose driver need not be asked.
+// The events of a run, in the form in which a data recorder in a car would store them (UN R157, 8:
+// DSSAD). The events are computed from the commands of the host, which every log contains. Every
+// change of mode is an event, also in runs whose driver need not be asked.
 #pragma once
 
 #include <cstdint>
@@ -20,51 +20,55 @@ std::string_view NameOfMode(std::int8_t mode);
 /// An event of a step. `from` and `to` are the modes before and after the event. They are the same
 /// mode in these cases:
 /// - The entry is the first entry.
-/// - A driver's input became effective.
-/// - lambda_H passed one half, but the mode did not change with it (on a ramp, or under a policy
+/// - A driver's input becomes effective.
+/// - lambda_H passes one half, but the mode does not change with it (on a ramp, or under a policy
 ///   that shares authority).
 /// - A manoeuvre begins, and emergency braking has hidden the state since the beginning of the log.
+///   The mode before the manoeuvre is then unknown.
 ///
 /// If emergency braking or its warning begins or ends, `from` and `to` are the modes of the
 /// commands. The same is true for the first entry if the log begins late. For other events, `from`
 /// and `to` are the modes that the commands would have without emergency braking.
 struct TakeOverEntry {
   std::int64_t step = 0;  // the first step whose command shows the event
-  // The first step in which the event may have happened. It is before `step` if the log lacks the
-  // commands just before `step`, or, for an effective input, if the log lacks offers of the driver.
+  // The first step in which the event may have happened. It is earlier than `step` in two cases:
+  // the log lacks the commands just before `step`, or the event is an effective input and the log
+  // lacks offers of the driver.
   std::int64_t earliest_step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
-  bool transfer = false;  // whether the driving side changes, as in the measures
+  bool transfer = false;  // whether lambda_H passes kMainAuthority in this event
   bool first = false;     // whether this is the entry of the first command
   std::string_view logged;
 };
 
-/// The text of an entry, for a person who reads it. For an acknowledgement, the text says whether a
-/// person or the driver model has acknowledged. The text also says whether a person has overridden.
+/// The text that a reader of the log sees for an entry. For an acknowledgement, the text says
+/// whether a person or the driver model has acknowledged. The text also says whether a person has
+/// overridden.
 /// @param person section of the scenario of this run
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
 /// Collects the events and the requests of a run from its commands (HOST_COMMAND), in the order of
-/// steps. Some commands may be missing. If the first command after such a gap belongs to a request
-/// that begins in the gap, requests() does not contain this request.
+/// steps. Some commands may be missing. If a request begins in a gap of missing commands, and the
+/// first command after the gap belongs to this request, requests() does not contain the request.
 ///
 /// If the commands of the first steps are missing, the earlier events are unknown. The first entry
 /// then says which mode the first command has. requests() does not contain a request that may be
 /// open in this command, because the step of the request is unknown (BeganInRequest()).
 ///
 /// The mode of a command says whether the driver has a share of the authority, and lambda_H is this
-/// share. The share may be 0 at first, and may grow later. So there are two different events.
-/// First, the driver gets a share. Second, lambda_H passes kMainAuthority: this is the transfer. If
-/// both events happen in one step, one entry covers both. The driver's input is effective if it
-/// changes the command by at least kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a
-/// is the command before the driver got this share. The automation's part of the command does not
-/// count.
+/// share. This share may be 0 at first, and may grow later. So two different events belong to a
+/// take-over. In the first event, the mode gives the driver a share. In the second event, the
+/// transfer, lambda_H passes kMainAuthority. If both events happen in one step, one entry covers
+/// both. The driver's input is effective if it changes the command by at least
+/// kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a is the command before the
+/// driver got this share. The automation's part of the command does not count.
 ///
-/// The modes of emergency braking hide the state. Until these modes end, the last state before the
-/// emergency braking counts. In a run without requests, the state of the side with more authority
-/// counts.
+/// The modes of emergency braking hide the state. In a run with requests, the log uses the last
+/// state before the braking. During a collision warning, this state is AUTOMATED or MANUAL, because
+/// the warning hides no other state. In a run without requests, the log uses the state of the side
+/// with more authority.
 class TakeOverLog {
  public:
   /// @param human_mps2 a_H, the driver's offer; nullopt if a_H is not known
@@ -75,8 +79,8 @@ class TakeOverLog {
   void DropEntries() { entries_.clear(); }
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
   /// Whether a request may have been open before the first command. The result is true if the first
-  /// command is of a step after step 0, and if the first mode that emergency braking does not hide
-  /// is a mode other than AUTOMATION and HUMAN.
+  /// command is of a step after step 0, and the first mode other than EMERGENCY_BRAKING is not
+  /// AUTOMATION, HUMAN or COLLISION_WARNING.
   bool BeganInRequest() const { return began_in_request_; }
   /// The mode that the last command would have without emergency braking. The result is AUTOMATION
   /// before the first command. It is EMERGENCY_BRAKING if the log begins late, and all commands so
@@ -99,7 +103,8 @@ class TakeOverLog {
   bool HidesRequest(const arbitration_t& command, std::int8_t from) const;
   void Drive(const arbitration_t& command, std::optional<double> human_mps2);
 
-  std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
+  // The last command; its mode is the mode that it would have without emergency braking.
+  std::optional<arbitration_t> last_;
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
   // The next two fields have a meaning only if the driver has a share of the authority.
   // before_share_mps2_ is the command before the driver got the share; it is empty after the
@@ -111,10 +116,11 @@ class TakeOverLog {
   // lacks.
   bool unasked_ = false;
   bool asks_ = false;  // whether a command has shown that this is a run with requests
-  // The first command is not of step 0, and emergency braking has hidden the state since then.
+  // Whether the first command is of a step after step 0, and emergency braking has hidden the state
+  // since the first command.
   bool hidden_ = false;
   bool began_in_request_ = false;
-  std::optional<std::int64_t> unknown_offer_;  // the first step of this share without an offer
+  std::optional<std::int64_t> unknown_offer_;  // first step of this share with an unknown offer
   std::int64_t earliest_ = 0;                  // the step after the previous command
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;

@@ -9,14 +9,14 @@
 
 namespace fogline::take_over {
 
-/// Smallest change of the command by the driver alone that counts as an effective input, in m/s2.
-/// Our choice: 0.1 % of g, half of the command's jump at a transfer in the paper's experiment. No
-/// brake or engine has a finer setting.
+/// An input of the driver is effective if it changes the command by at least this number, in m/s2.
+/// Our choice: 0.1 % of g. This is half of the jump of the command at a transfer in the paper's
+/// experiment. No brake or engine has a finer setting.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
 
-/// Whether the driver's offer changes the command noticeably. The change is the driver's share
-/// times the difference between the driver's offer and the last command before the driver had a
-/// share.
+/// Whether the driver's offer changes the command by at least kEffectiveInput_mps2. The change is
+/// the driver's share times the difference between the driver's offer and the last command before
+/// the driver had a share.
 inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
   return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }
@@ -34,7 +34,7 @@ struct TakeOverRequest {
   std::optional<std::int64_t> manoeuvre;  // beginning of the manoeuvre
   std::optional<std::int64_t> standstill;
 
-  /// Notes that the state has changed to `state` in this step.
+  /// Records that the state has changed to `state` in this step.
   void Enter(TakeOverState state, std::int64_t step) {
     using enum TakeOverState;
     if (state == kUrgentDemand) escalated = step;

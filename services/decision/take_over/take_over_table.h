@@ -24,8 +24,8 @@ enum class TakeOverState : std::uint8_t {
   kMrmFailed,     // the brake has not stopped the car in time; the manoeuvre continues
 };
 
-/// Conditions of a step that can change the state. Several conditions may be true in one step. Then
-/// the first row of the table that applies decides.
+/// Conditions that can change the state in a step. Several conditions may be true in one step. The
+/// first row of the table that applies then decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
   kCalm,          // the policy does not want the human; a person must also give the authority back
@@ -36,7 +36,7 @@ enum class TakeOverEvent : std::uint8_t {
   kSevere,        // time to collision with the tracked car is below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
   kStandstill,
-  kOverdue,   // the stage takes longer than kOverdueFactor times the time that its brake needs
+  kOverdue,   // the stage of the manoeuvre has not stopped the car in time (kOverdueFactor)
   kOverride,  // the driver overrides by the brake (TakeOver)
   kGone,      // the person has left the seat (readiness 0), and may come back
 };
@@ -52,7 +52,7 @@ enum class TakeOverGuard : std::uint8_t {
   kFresh,  // there has been no minimal risk manoeuvre in this run
 };
 
-/// Which side has authority. The authority determines the applied acceleration.
+/// The side that has authority. The authority determines the acceleration that is applied.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
   kEasing,      // the automation's offer, but at most a ramp that falls to -slow_down_mps2
@@ -81,12 +81,12 @@ using Row = TakeOverRow;
 /// The rows of a state are tried in this order. If no row applies, state and authority do not
 /// change. Sources, by paragraph of UN R157:
 ///   - A request to take over ends only when the automation is deactivated or the manoeuvre begins
-///     (5.4.4). A change of the policy's engagement request does not end it.
+///     (5.4.4). A change of the policy's engagement request does not end the request to take over.
 ///   - If the driver has not taken over, the manoeuvre begins lead_s after the request (5.4.4.1).
-///     It begins earlier only in a severe situation (5.4.4.1.1).
-///   - A late driver ends the manoeuvre, in either stage, while the car moves (5.5.2, 5.5.3). The
-///     reason is that a present and able driver may always drive. SUMO's ToC device has the same
-///     rule.
+///     The manoeuvre begins earlier only in a severe situation (5.4.4.1.1).
+///   - A driver who takes over late ends the manoeuvre in either stage, if the car still moves
+///     (5.5.2, 5.5.3). The reason is that a driver who is present and able may always drive. SUMO's
+///     ToC device has the same rule.
 ///   - After any manoeuvre, the automation is not activated again before the next run cycle
 ///     (5.5.5). The rule also applies if the driver has ended the manoeuvre. A car at standstill
 ///     does not drive off, because driving off (5.5.4) belongs to a new run.
@@ -176,7 +176,7 @@ constexpr const TakeOverStateInfo& InfoOf(TakeOverState state) {
   return kTakeOverStates[static_cast<std::size_t>(state)];
 }
 
-/// The authority in a state, as given by the rows that lead to this state.
+/// The authority in a state. All rows that lead to this state have this authority.
 constexpr Authority AuthorityOf(TakeOverState state) {
   return std::ranges::find(kTakeOverTable, state, &TakeOverRow::next)->authority;
 }

@@ -14,10 +14,10 @@ namespace fogline::log {
 /// The channel of log_graph_t. The channel is not part of kGraph, because no process publishes it.
 inline constexpr std::string_view kLogGraphChannel = "FOGLINE_GRAPH";
 
-/// The kStep channels of this program.
+/// The channels of this program that have a message in each step (Pace::kStep).
 runtime::ChannelSet OwnStepChannels();
 
-/// Writes the graph of a run, behind its scenario.
+/// Writes the graph of a run, after the scenario of the run.
 /// @param channels kStep channels
 /// @throws std::runtime_error of EventLogWriter::Write()
 void WriteLogGraph(EventLogWriter& log, std::int64_t run_id,

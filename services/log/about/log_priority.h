@@ -1,5 +1,5 @@
-// The real-time priority of a run's roles, in the log of this run (lcmtypes/log_priority_t.lcm).
-// This message is not part of the run and not in its digest.
+// The message log_priority_t in the log of a run: which roles of the run had real-time priority
+// (lcmtypes/log_priority_t.lcm). The message is not part of the run, and not in its digest.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace fogline::log {
 /// it.
 inline constexpr std::string_view kLogPriorityChannel = "FOGLINE_PRIORITY";
 
-/// The roles of a run in real time that got a real-time priority at the start of the run, and the
-/// roles that did not get it. The kernel runs roles with this priority before ordinary processes
-/// (SCHED_FIFO). The priority of roles on other machines is unknown.
+/// Which roles of a run in real time got a real-time priority at the start of the run. The kernel
+/// runs roles with this priority before ordinary processes (SCHED_FIFO). The priority of roles on
+/// other machines is unknown.
 struct RealtimePriority {
   std::vector<std::string> granted;
   std::vector<std::string> refused;

@@ -24,15 +24,17 @@ struct LogVersion {
   std::string Text() const;
 };
 
-/// Reads the whole log. @throws InputError if the file cannot be read or is not an event log
+/// Reads the whole log to find its writer. @throws InputError if the file cannot be read or is not
+/// an event log
 LogVersion VersionOf(const std::filesystem::path& log);
 
-/// Refuses a log of another version. @throws InputError that names the version
+/// Refuses a log that another version of Fogline wrote. @throws InputError that names this version,
+/// if it is known
 [[noreturn]] void RefuseVersion(const std::filesystem::path& log);
 
 /// Reads the scenario of a log.
-/// @throws InputError if the scenario is invalid; for a log of another version, the last line of
-/// the error names this version
+/// @throws InputError if the scenario is invalid. If another version of Fogline wrote the log, the
+///     last line of the error says so.
 Scenario ParseLoggedScenario(const std::string& text, const std::filesystem::path& log);
 
 }  // namespace fogline::log

@@ -10,16 +10,18 @@ namespace fogline::log {
 struct ReadOptions {
   /// The part of a log that is compared with its seal.
   enum class Compared {
-    kRun,   // scenario and steps; in real time all bytes, because STATUS also gives results
+    // In lockstep the scenario and the steps. In real time all bytes of the file, because some
+    // results of the run come from the STATUS messages.
+    kRun,
     kFile,  // all bytes of the file, which are read again at the end
   };
 
   Compared compared = Compared::kRun;
-  /// In lockstep: whether the reader also gives steps that lack messages. Otherwise the reader ends
-  /// before the first of these steps.
+  /// In lockstep: whether the reader also returns steps that lack messages. Otherwise the reader
+  /// ends before the first of these steps.
   bool gaps = false;
-  /// Whether the log is known to have every message that the recorder has received. A log with a
-  /// sound seal has them in any case.
+  /// Whether the log is known to have every message that the recorder has received. A log that
+  /// agrees with its seal always has all these messages.
   bool has_all = false;
   /// The run to read; nullopt: the first run in the log.
   std::optional<std::int64_t> run_id;

@@ -18,8 +18,12 @@ Channels Of() {
 
 /// The steps that a measure needs.
 enum class Needs : std::uint8_t {
-  kAnyStep,    // any steps; every step if there is no value, because a missing step might give one
-  kLaterStep,  // the last step if there is no value, because it repeats a value of an earlier step
+  // The steps in the log are enough if they give the measure a value. If they give no value, the
+  // log must have every step, because a missing step might give a value.
+  kAnyStep,
+  // The steps in the log are enough if they give the measure a value. If they give no value, the
+  // log must have the last step, because the last step repeats a value of an earlier step.
+  kLaterStep,
   kEveryStep,
   kEveryStepFromTheBeginning
 };

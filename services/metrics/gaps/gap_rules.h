@@ -15,8 +15,9 @@ struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
   std::bitset<kNumChannels> every;     // the channels without a message in any step with TRUTH
   bool beginning = false;              // whether the first steps are missing
-  bool end = false;                    // whether the log ends before the run
-  bool last = false;                   // whether TRUTH lacks messages, including the last one
+  bool end = false;                    // whether the log ends before the end of the run
+  // Whether TRUTH messages are missing, and the last TRUTH of the run is one of them.
+  bool last = false;
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
 
@@ -26,11 +27,11 @@ struct Lack {
 /// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc says from which
 /// channels a measure is computed, and which steps it needs:
 /// - Sums over time, counts, shares of time, and differences between steps need every step. Such a
-///   measure is unknown if a message of its channels is missing. If the measure also depends on the
-///   beginning of the run, it is unknown if the beginning is missing.
-/// - Extremes and means are computed from the steps that the log has. They are unknown if the log
-///   has no message of one of their channels, or if they have no value and a missing step might
-///   give one.
+///   measure is unknown if a message of its channels is missing. A measure that depends on the
+///   beginning of the run is also unknown if this beginning is missing.
+/// - Extremes and means are computed from the steps that the log has. Such a measure is unknown if
+///   the log has no message of one of its channels, or if the measure has no value and a missing
+///   step might give it a value.
 /// - The measures of a collision are unknown if they have no value and the last TRUTH is missing.
 ///   The last TRUTH is sufficient, because every TRUTH after a collision repeats the collision.
 ///

@@ -11,7 +11,8 @@ namespace fogline::metrics {
 void InputTimes::Add(const driver_input_t& input) {
   const double time_s = static_cast<double>(input.header.utime) / kMicrosPerSecond;
   Seat& seat = seats_[input.instance];
-  // An input with the same time as the request comes from a person who has not seen the request.
+  // An input with the same time as the request comes from a person who has not seen the request. So
+  // it counts as an input before the request.
   while (seat.begun < requests_.size() &&
          requests_[seat.begun].requested_s + kSameTime_s < time_s) {
     ++seat.begun;

@@ -20,8 +20,8 @@ inline constexpr double kMovement = 0.01;
 ///
 /// The time of an input is header.utime, the time of the newest TRUTH that the seat had received
 /// when the input came. So the resolution is one step of the run. If a person sees the request late
-/// because of the network or the screen, the times are longer. Only inputs after the request and
-/// within its judged interval count.
+/// because of the network or the screen, the times are longer. An input counts only if it comes
+/// after the request, and at most judged_s later (the length of the judged interval).
 class InputTimes {
  public:
   /// @param requests the requests of the run in order of time; they must outlive this object
@@ -29,8 +29,8 @@ class InputTimes {
   InputTimes(std::span<TakeOverMeasures> requests, double pedal)
       : requests_(requests), pedal_(pedal) {}
 
-  /// Adds the next input of a seat. The driver must have used inputs of this seat (a DRIVER_COMMAND
-  /// contains its instance). The inputs of a seat must come in order.
+  /// Adds the next input of a seat. The inputs of a seat must come in order.
+  /// @pre the driver has used an input of this seat: a DRIVER_COMMAND names the seat's instance
   void Add(const driver_input_t& input);
 
  private:

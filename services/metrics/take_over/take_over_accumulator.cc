@@ -16,7 +16,8 @@ bool ExcludesASensor(const track_t& track) {
   return std::ranges::find(track.usage, track_t::DISTRUSTED) != std::end(track.usage);
 }
 
-/// Whether the judged interval ends in a step with this mode and this speed.
+/// Whether the judged interval of a request (take_over_measures.h) ends in a step with this mode
+/// and this speed.
 bool IsOver(std::int8_t mode, double speed_mps) {
   if (mode == arbitration_t::MINIMAL_RISK) return speed_mps < take_over::kStandstill_mps;
   return mode == arbitration_t::AUTOMATION || mode == arbitration_t::HUMAN ||
@@ -45,8 +46,8 @@ std::string_view NameOf(TakeOverEnd end) {
   return "";
 }
 
-// The acceleration in the TRUTH of a step was applied before this step. So it belongs to the
-// earlier commands.
+// The acceleration in the TRUTH of a step was applied before this step. So the acceleration results
+// from earlier commands, and AddMotion() comes before AddCommand().
 void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command,
                               const track_t* track, std::optional<double> human_mps2) {
   const bool first = !late_;

@@ -24,8 +24,8 @@ class TakeOverAccumulator {
   /// Adds a step.
   /// @param command HOST_COMMAND of the step; nullptr if the message is missing. The state of a
   ///     request then does not change in this step.
-  /// @param track TRACK of the step; nullptr if the message is missing. The exclusion in the last
-  ///     TRACK then still applies.
+  /// @param track TRACK of the step; nullptr if the message is missing. If the policy excluded a
+  ///     sensor in the last TRACK, the sensor then still counts as excluded.
   /// @param human_mps2 a_H, the driver's offer; nullopt if it is not known
   void Add(const truth_t& truth, const arbitration_t* command, const track_t* track,
            std::optional<double> human_mps2);
@@ -43,10 +43,11 @@ class TakeOverAccumulator {
  private:
   /// Values of the judged interval, while it lasts.
   struct Judged {
-    bool fog_unknown = false;   // the log lacks the beginning of the fog at the request
+    bool fog_unknown = false;   // the request is in a fog whose beginning the log lacks
     bool jerk_unknown = false;  // the log begins less than 1 s before a step of the interval
     Mean deceleration_mps2;
-    // Only TTC and time gap are used. These two measures do not depend on the section.
+    // Only the TTC and the time gap of `pair` are used. These two measures do not depend on the
+    // values of MeasuresSection.
     PairAccumulator pair{MeasuresSection{}};
     // The time in which each side drove, and the time of the last step.
     std::int64_t automation_us = 0;
@@ -64,7 +65,8 @@ class TakeOverAccumulator {
   void Begin(const truth_t& truth);
   /// Adds the time since the last step to the side that has driven since then.
   void AddDriving(std::int64_t utime);
-  /// Adds the values of a step's TRUTH, also for the step of the request.
+  /// Adds the values of TRUTH. Called for the step of the request and for each later step of the
+  /// judged interval.
   void Look(const truth_t& truth);
   void NoteTimes(std::int64_t utime);
   void NoteOutcome(std::int8_t mode);

@@ -22,8 +22,8 @@ enum class TakeOverEnd : std::uint8_t {
 /// Name of an outcome for JSON and CSV, such as "taken_over".
 std::string_view NameOf(TakeOverEnd end);
 
-/// Measures of one request. A time counts from the step of the request if its comment names no
-/// other beginning. A field is empty if its event has not happened, or if no step is relevant for
+/// Measures of one request. Times begin with the step of the request, unless a comment names
+/// another beginning. A field is empty if its event has not happened, or if no step is relevant for
 /// the measure.
 ///
 /// The *judged interval* begins with the step of the request. It ends with the first step in which
@@ -37,19 +37,21 @@ struct TakeOverMeasures {
   /// Length of the judged interval, s.
   std::optional<double> judged_s = 0;
 
-  /// The next two times exist only if a person drives (input_times.h). first_movement_time_s is the
-  /// time to the first DRIVER_INPUT in which the person has moved a pedal since the request, or has
-  /// pressed the button for taking over, s. pedal_on_time_s is the time to the first DRIVER_INPUT
-  /// in which a pedal has reached the threshold for taking over, s.
+  /// The next two times, in s, exist only if a person drives (input_times.h). Both begin with the
+  /// request. first_movement_time_s ends with the first DRIVER_INPUT in which the person has moved
+  /// a pedal since the request, or has pressed the button for taking over. pedal_on_time_s ends
+  /// with the first DRIVER_INPUT in which a pedal has reached the threshold for taking over.
   std::optional<double> first_movement_time_s;
   std::optional<double> pedal_on_time_s;
-  /// Time to the acknowledgement, the driver's first answer that the arbitrator has received, s.
+  /// Time from the request to the acknowledgement, s. The acknowledgement is the driver's first
+  /// answer that the arbitrator has received.
   std::optional<double> reaction_time_s;
-  /// Time to the transfer, in which the driver gets the main authority (HumanDrives), s.
+  /// Time from the request to the transfer, s. In the transfer the driver gets the main authority
+  /// (HumanDrives).
   std::optional<double> take_over_time_s;
-  /// Time to the driver's first effective input (take_over_request.h), s.
+  /// Time from the request to the driver's first effective input (take_over_request.h), s.
   std::optional<double> effective_input_time_s;
-  /// Time to the beginning of a minimal risk manoeuvre, s.
+  /// Time from the request to the beginning of a minimal risk manoeuvre, s.
   std::optional<double> manoeuvre_time_s;
 
   /// Speed of the host in the step of the request, m/s.
@@ -73,7 +75,7 @@ struct TakeOverMeasures {
   std::optional<double> min_time_gap_s;
 
   /// Times in the judged interval in which automation, driver and manoeuvre drove the host, s.
-  /// While authority is shared, the mode in HOST_COMMAND names the side. A step without
+  /// While authority is shared, the mode in HOST_COMMAND decides which side counts. A step without
   /// HOST_COMMAND counts like the step before it.
   std::optional<double> automation_drove_s = 0;
   std::optional<double> driver_drove_s = 0;

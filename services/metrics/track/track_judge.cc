@@ -18,7 +18,7 @@ TrackJudge::TrackJudge(const Scenario& scenario) {
   most_error_m_ = std::max(0.0, offset_m) + tolerance_m;
 }
 
-// Without a track the error is NaN, and both comparisons are false.
+// Without a track the error is NaN, and both comparisons are false. So the result is false.
 bool TrackJudge::IsWrong(const Sample& sample) const {
   const double error_m = sample.fused_distance_m - sample.host_gap_m;
   return error_m < least_error_m_ || error_m > most_error_m_;

@@ -10,9 +10,9 @@ namespace fogline::metrics {
 ///
 ///     e_0 = (b_r/s_r^2 + b_l/s_l^2) / (1/s_r^2 + 1/s_l^2)
 ///
-/// b_r and b_l are the offsets (bias_m) of radar and LiDAR, s_r and s_l the standard deviations of
-/// their ranges that the filter assumes. A steady filter over both ranges has this error exactly.
-/// Lateral offsets cause no error, because the filter knows them.
+/// b_r and b_l are the offsets (bias_m) of radar and LiDAR. s_r and s_l are the standard deviations
+/// that the filter assumes for their ranges. A steady filter over both ranges has this error
+/// exactly. Lateral offsets cause no error, because the filter knows them.
 double ErrorOfOffsets(const Scenario& scenario);
 
 /// In clear air, a steady filter measures the distance d + e_0 if the true gap is d. The values d
@@ -22,7 +22,7 @@ double ErrorOfOffsets(const Scenario& scenario);
 ///     d_fused - d < min(0, e_0) - tolerance   or   d_fused - d > max(0, e_0) + tolerance
 ///
 /// So the true distance d and the distance d + e_0 of clear air always count as right. The cause of
-/// an error has no effect. The cause may be a deceived LiDAR, a filter that has not settled, or a
+/// an error does not matter. The cause may be a deceived LiDAR, a filter that has not settled, or a
 /// policy that uses only the sensor with the larger offset. A step without a track is not wrong.
 class TrackJudge {
  public:

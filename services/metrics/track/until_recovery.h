@@ -3,14 +3,14 @@
 
 namespace fogline::metrics {
 
-/// The fog also has an effect after its end. A deceived filter needs time to settle, and the
-/// automation drives on this filter. This class computes sums from the first step in fog to the
-/// last step that is in fog or has a wrong track (TrackJudge). After this last step, the fused
+/// The fog also has an effect after its end. A deceived filter needs time to settle, and in this
+/// time the automation uses a wrong track. This class computes sums from the first step in fog to
+/// the last step that is in fog or has a wrong track (TrackJudge). After this last step, the fused
 /// distance stays right. If the fused distance is wrong at the end of the run, the sums contain all
 /// steps up to the end.
 ///
-/// Only later steps show which step was the last step to count. So the class has two sums: one over
-/// all steps so far, and one over the steps that certainly count.
+/// A step without fog and with a right track counts only if a later step counts. So the class has
+/// two sums: one over all steps so far, and one over the steps that certainly count.
 template <class Sums>
 class UntilRecovery {
  public:

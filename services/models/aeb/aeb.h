@@ -21,11 +21,11 @@ enum class AebState : std::uint8_t {
 ///     ttc           s <= ttc_s c
 ///     deceleration  c^2 >= 2 required_mps2 s
 ///
-/// The scenario's trigger says which conditions must be met. The own speed must also be in the
-/// range of the system, and c must be above release_closing_mps. A warning begins if the collision
-/// would be imminent with the gap after warning_s, s - warning_s c. The braking continues at any
-/// own speed. The braking ends if c is at most release_closing_mps, if no car ahead is seen, or if
-/// the own car stands.
+/// The scenario's trigger says which conditions must be met. The own speed must also be between
+/// min_speed_mps and max_speed_mps, and c must be above release_closing_mps. A warning begins if a
+/// collision would be imminent at the gap s - warning_s c, which the cars will have after
+/// warning_s. The braking continues at any own speed. The braking ends if c is at most
+/// release_closing_mps, if no car ahead is seen, or if the own car stands.
 class Aeb {
  public:
   explicit Aeb(const AebSection& section) : section_(section) {}
@@ -34,7 +34,7 @@ class Aeb {
   AebState Step(const Situation& seen);
   AebState state() const { return state_; }
 
-  /// The acceleration that is applied in this state, in place of `acceleration_mps2`.
+  /// The acceleration that this state applies in place of the command `acceleration_mps2`.
   double Applied(double acceleration_mps2) const;
 
  private:

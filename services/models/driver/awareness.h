@@ -1,4 +1,4 @@
-// How much of the road a driver is aware of, and how this awareness fades and returns.
+// Model of a driver's awareness of the road, which fades and returns.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,8 @@ class Awareness {
     if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
   }
 
-  /// Advances A by `duration_s`, in which the driver has this task. Returns A at the end.
+  /// Advances A by `duration_s`. The driver has this task during the whole time. Returns A at the
+  /// end.
   double Step(DriverTask task, double duration_s) {
     if (task == DriverTask::kDrives) {
       awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);
@@ -57,7 +58,8 @@ class Awareness {
     return parameters_.reaction_time_s + parameters_.slow_reaction_time_s * (1.0 - least);
   }
 
-  /// The sizes V_s and r_c of the errors in human_driver.h, as in SUMO's driver state.
+  /// The sizes V_s and r_c of the errors (human_driver.h). The sizes are the same as in SUMO's
+  /// driver state.
   double GapError() const { return kSumoGap * kSumoDeviation * (1.0 - awareness_); }
   double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
 

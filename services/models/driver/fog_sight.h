@@ -10,8 +10,9 @@ namespace fogline::models {
 
 enum class Seen { kOutline, kLamps, kNothing };
 
-/// What the driver sees at the gap d, with the speeds v of the own car and v_l of the car ahead,
-/// and the extinction sigma = ln 20 / visibility (services/visibility.h):
+/// The driver's sight. d is the gap, v the speed of the own car, v_l the speed of the car ahead,
+/// and sigma = ln 20 / visibility the extinction (services/visibility.h). The driver sees the
+/// outline, the lamps, or the closing under these conditions:
 ///
 ///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
@@ -20,10 +21,10 @@ enum class Seen { kOutline, kLamps, kNothing };
 /// FogSightParameters has the other symbols: contrast C_0, contrast_threshold eps,
 /// lamp_intensity_cd I, illuminance_threshold_lx E_t, angular_rate_threshold_radps (threshold), and
 /// lamp_distance_factor kappa. W is body_width_m if the outline is visible, and lamp_separation_m
-/// if only the lamps are visible. If the closing is not visible, the driver perceives v_l = v and
-/// acceleration 0 of the car ahead. The perceived distance is d up to clear_share d_o, and kappa d
-/// from d_o on. Between these distances the factor grows linearly from 1 to kappa. The range of the
-/// lamps is d_l = (2 / sigma) W_0(sigma / 2 sqrt(I / E_t)), with Lambert's W.
+/// if only the lamps are visible. If the closing is not visible, the driver perceives a car ahead
+/// with the speed v and the acceleration 0. The perceived distance is d up to clear_share d_o, and
+/// kappa d from d_o on. Between these distances the factor grows linearly from 1 to kappa. The
+/// range of the lamps is d_l = (2 / sigma) W_0(sigma / 2 sqrt(I / E_t)), with Lambert's W.
 class FogSight {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

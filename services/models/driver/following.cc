@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
 
-// Upper limit of the exponent in z^(2 a / a_free). The exponent goes to infinity as v goes to v_0.
+// Upper limit of the exponent in z^(2 a / a_free). The exponent goes to infinity if v goes to v_0.
 // The limit applies only if a_free is below 2 % of a, so its effect on the acceleration is small.
 constexpr double kLargestExponent = 100;
 

@@ -1,5 +1,5 @@
-// A driver with errors of perception, reaction time and anticipation, who uses any car-following
-// model.
+// A driver with errors of perception, a reaction time and anticipation. The driver uses one of the
+// car-following models.
 #pragma once
 
 #include <array>
@@ -29,20 +29,21 @@ struct Attention {
 /// s is the gap, v the own speed, v_l the speed of the car ahead, and a the own acceleration. V_s
 /// and r_c are the sizes of the errors (Attention). At the time t, the driver acts on the situation
 /// at t - T_r, interpolated linearly between two steps. A driver who anticipates assumes that the
-/// own acceleration and the closing speed have been constant since then:
+/// acceleration of the own car and the closing speed have been constant since t - T_r:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
 ///     v_l' = v' - (v - v_l,est)                    with all values at the time t - T_r
 ///
 /// The equations come from other literature that quotes the paper. Only the abstract of the paper
-/// itself was checked. Without errors and reaction time, the result equals the result of the
+/// itself was checked. If errors and reaction time are 0, the result equals the result of the
 /// car-following model, bit by bit.
 class HumanDriver {
  public:
   /// Longest reaction time in steps.
   static constexpr std::size_t kMaxReactionSteps = 254;
 
-  /// @param human its reaction time is the longest possible reaction time of the driver
+  /// @param human parameters; human.reaction_time_s is the longest possible reaction time of the
+  /// driver
   /// @param random random numbers for the driver's errors; each driver has a separate stream
   /// @throw std::invalid_argument for a parameter out of its range or a reaction time that is too
   /// long.
@@ -50,8 +51,8 @@ class HumanDriver {
               double step_s);
 
   /// The acceleration in this step. Call Step() once per step, in the order of steps, because
-  /// errors and memory continue from step to step. Until T_r has passed, the driver acts on the
-  /// first situation.
+  /// errors and memory continue from step to step. Until the reaction time T_r has passed since the
+  /// first step, the driver acts on the situation of the first step.
   double Step(std::int64_t step, const Situation& seen);
   /// The acceleration of a driver whose attention changes. A reaction time above the constructor's
   /// reaction time is reduced to the constructor's reaction time.

@@ -18,8 +18,9 @@ namespace fogline::models {
 ///
 /// Behind a car of equal speed, a is 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta).
 ///
-/// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2. The
-/// formula has no value for s <= 0, and the result is then this limit.
+/// If s goes to 0, the formula goes to minus infinity. This class never returns less than
+/// -max_deceleration_mps2. For s <= 0, the formula has no meaning, and the result is
+/// -max_deceleration_mps2.
 class Idm {
  public:
   explicit Idm(const DriverSection& driver);

@@ -10,8 +10,8 @@ namespace fogline::models {
 ///
 ///     w' = e^(-h / tau) w + sqrt(1 - e^(-2 h / tau)) eta          eta ~ N(0, 1)
 ///
-/// w is the value of the process, w' its next value, h the step, and eta a standard normal random
-/// number. The process begins with w = eta, in the stationary distribution.
+/// w is the value of the process, w' its next value, h the length of a step, and eta a standard
+/// normal random number. The process begins with w = eta, in the stationary distribution.
 class OrnsteinUhlenbeck {
  public:
   /// @param correlation_time_s tau, above 0

@@ -14,8 +14,8 @@ namespace fogline::models {
 ///     a_H = A f(t) - c (1 - f(t)) - B f(b), at least -B
 ///     f(x) = x with map linear, x^pedal_exponent with map progressive
 ///
-/// So full throttle gives A, released pedals give -c, and full brake gives -B. With both pedals
-/// pressed, both act.
+/// So full throttle gives A, released pedals give -c, and full brake gives -B. If both pedals are
+/// pressed, both have an effect.
 class PedalResponse {
  public:
   explicit PedalResponse(const PersonSection& person) : person_(person) {}

@@ -17,10 +17,11 @@ namespace fogline::models {
 ///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
 /// mean, std and P(late) are mean_s, std_s and late_probability of TakeOverParameters. Z is a
-/// standard normal number. z is defined by P(Z > z) = P(late) in both models that use it. SUMO
+/// standard normal number. In both models that use z, z is defined by P(Z > z) = P(late). SUMO
 /// (MSDevice_ToC) draws again if a value is negative. After 100 negative values, SUMO takes the
-/// mean. For a lead time of minutes, negative values are frequent, so P(T > t) is larger than
-/// P(late). SUMO itself has a table in place of the formula (t - m) / z.
+/// mean. For a lead time of minutes, many values are negative and are drawn again, so P(T > t) is
+/// larger than P(late). The standard deviation here is (t - m) / z. SUMO itself takes its standard
+/// deviation from a table.
 class TakeOverTime {
  public:
   /// @param lead_s t, above 0

@@ -7,8 +7,8 @@
 namespace fogline::models {
 
 /// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
-/// Defaults: the values that ad-rss-lib suggests for the vehicle behind (its appendix "Parameter
-/// Discussion"), with the response time of its ego vehicle.
+/// Defaults: the values that ad-rss-lib suggests for the vehicle behind (appendix "Parameter
+/// Discussion"). An exception is the response time: the default is the value for the ego vehicle.
 struct RssParameters {
   double response_s = 1.0;          // rho, at least 0
   double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0
@@ -33,23 +33,24 @@ struct FuzzyParameters {
 };
 
 /// Proactive fuzzy surrogate PFS. PFS assumes that the car ahead brakes with b_l. PFS is 0 if
-/// comfortable braking is then sufficient, and 1 if hard braking is not sufficient. Between these
-/// cases, PFS is linear in the distance s - d_1, from 0 at d_safe to 1 at d_unsafe. s is the gap, v
-/// the own speed, and v_l the speed of the car ahead:
+/// comfortable braking of the own car is then sufficient, and 1 if even hard braking is not
+/// sufficient. Between these cases, PFS is linear in the distance s - d_1, from 0 at d_safe to 1 at
+/// d_unsafe. s is the gap, v the own speed, and v_l the speed of the car ahead:
 ///
 ///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
 ///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)
 double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
-/// Critical fuzzy surrogate CFS. CFS assumes that the car ahead keeps its speed, and that the own
-/// acceleration a, at least -b_c, stays constant during the response. The closing speed after the
-/// response is c' = v + a rho - v_l. If v <= v_l, CFS is 0. Otherwise CFS is computed like PFS, but
-/// with the gap s in place of the distance s - d_1, and with
+/// Critical fuzzy surrogate CFS. CFS assumes that the car ahead keeps its speed. It also assumes
+/// that the own acceleration a stays constant during the response; a below -b_c counts as -b_c. The
+/// closing speed after the response is c' = v + a rho - v_l. If v <= v_l, CFS is 0. Otherwise CFS
+/// is computed like PFS, but with the gap s in place of the distance s - d_1, and with
 ///
 ///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)      d_unsafe: b_h in place of b_c
 ///
-/// If c' < 0, the car already brakes enough to end the closing. CFS is then 1 if s is below
-/// (v - v_l)^2 / (2 |a_0|), otherwise 0. a_0 is the own acceleration without the limit -b_c.
+/// If c' < 0, the own car already brakes so hard that the closing ends during the response. CFS is
+/// then 1 if s is below (v - v_l)^2 / (2 |a_0|), otherwise 0. a_0 is the own acceleration without
+/// the limit -b_c.
 double CriticalFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
 /// Deceleration in m/s2 that the model demands, 0 if none: b_c + CFS (b_h - b_c) if CFS > 0,

@@ -6,7 +6,8 @@
 namespace fogline::models {
 namespace {
 
-// Tolerance for the rounding of sums of steps. With it, four steps of 0.1 s last 0.4 s.
+// Tolerance for the rounding of sums of steps. With this tolerance, four steps of 0.1 s count as
+// 0.4 s.
 constexpr double kRounding_s = 1e-9;
 
 }  // namespace

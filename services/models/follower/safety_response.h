@@ -1,6 +1,5 @@
-// Response of a careful driver to the car ahead, by one of three definitions. This response is a
-// reference for followers. A follower may also apply this response in addition to its car-following
-// model.
+// Response of a careful driver to the car ahead, by one of three published definitions. A follower
+// may apply this response in addition to its car-following model.
 #pragma once
 
 #include "services/models/driver/situation.h"
@@ -25,11 +24,11 @@ struct ResponseParameters {
   double lead_braking_mps2 = 5.0;   // the car ahead brakes hard above this deceleration
 };
 
-/// After the danger appears, the driver does nothing for the perception time. Then, for the delay,
-/// the driver's foot is off the throttle. After the delay, the braking grows at the jerk limit to
-/// the deceleration that the model demands:
+/// After the danger appears, the driver does nothing during the perception time. During the delay
+/// that follows, the driver's foot is off the throttle. After the delay, the braking grows at the
+/// jerk limit to the deceleration that the model demands:
 ///
-/// - reference human: full braking while there is danger (ResponseParameters). When danger has
+/// - reference human: full braking while there is danger (ResponseParameters). After danger has
 ///   begun, it lasts at least until the closing speed is 0.
 /// - RSS: full braking while the gap is below the safe distance. The response time rho of RSS
 ///   replaces the perception time, and there is no delay.

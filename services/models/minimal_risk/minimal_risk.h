@@ -6,17 +6,17 @@
 
 namespace fogline::models {
 
-/// Brakes to standstill within limits on deceleration d and jerk j, starting from the applied
-/// acceleration. a is the previous command, v > 0 is the speed, and h is the length of a step. The
-/// command of the step is
+/// Brakes to standstill. The limits are d for the deceleration and j for the jerk. The manoeuvre
+/// starts from the applied acceleration. a is the previous command, v > 0 is the speed, and h is
+/// the length of a step. The command of the step is
 ///
 ///     a'   = max(a - j h, -d, -r(v))           but at most a + j h
 ///     r(v) = v/(n h) + (n - 1) j h/2          n = ceil((sqrt(1 + 8 v/(j h^2)) - 1)/2)
 ///
-/// r(v) is the strongest braking with which the car can still come to rest smoothly: from then on,
-/// the braking falls by j h in each step, and the car comes to rest exactly at the end of a step.
-/// In n steps, the brakings r, r - j h, ... reduce the speed by v, and the last braking is at most
-/// j h. So the end is as smooth as the beginning. In two cases a limit is exceeded, but as little
+/// r(v) is the strongest braking from which the car can still come to rest smoothly. In each later
+/// step the braking then falls by j h, and the car comes to rest exactly at the end of a step. In n
+/// steps, the brakings r, r - j h, ... reduce the speed by v, and the last braking is at most j h.
+/// So the end is as smooth as the beginning. In two cases the car exceeds a limit, but by as little
 /// as possible:
 ///
 /// - A car that brakes harder than d at the start releases the brake at the rate j, down to d.
@@ -38,13 +38,14 @@ class MinimalRisk {
   /// The acceleration for the step that begins here. Call Step() once per step. @pre begun()
   /// @param speed_mps measured at the beginning of the step, at least 0
   double Step(double speed_mps) { return Step(speed_mps, limits_.deceleration_mps2); }
-  /// The acceleration with another deceleration d, which may change from step to step. The limit on
-  /// jerk still applies.
+  /// As Step(speed_mps), but with this deceleration d, which may change from step to step. The
+  /// limit on jerk still applies.
   /// @param deceleration_mps2 above 0, at most the deceleration of the limits
   double Step(double speed_mps, double deceleration_mps2);
 
  private:
-  /// r(v).
+  /// r(v) of the class comment: the strongest braking from which the car can still come to rest
+  /// smoothly.
   double Releasable(double speed_mps) const;
 
   MinimalRiskSection limits_;

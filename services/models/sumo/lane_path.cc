@@ -13,7 +13,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// The lanes inside of the junction between `lane` and `next`, and `next` itself; empty if no
-/// connection leads there. Each lane inside of a junction has only one connection onward.
+/// connection leads to `next`. Each lane inside of a junction has only one connection onward.
 Names Through(const std::string& lane, const std::string& next) {
   for (const libsumo::TraCIConnection& link : libsumo::Lane::getLinks(lane)) {
     if (link.approachedLane != next) continue;
@@ -31,7 +31,7 @@ Names Through(const std::string& lane, const std::string& next) {
 }
 
 /// The lanes inside of the junction between `before` and `lane`, from the last to the first, and
-/// then `before`; empty if no connection leads there.
+/// then `before`; empty if no connection leads from `before` to `lane`.
 Names BackThrough(const std::string& lane, const std::string& before) {
   Names lanes = Through(before, lane);
   if (lanes.empty()) return lanes;
@@ -49,14 +49,14 @@ Names LanesOf(const std::string& edge) {
   return lanes;
 }
 
-/// Finds the longest way from a lane along edges: the way with the most lanes. Of equally long
-/// ways, the class takes the way on the rightmost lanes. If each lane leads to several lanes, there
-/// are very many ways. So the class searches each lane of an edge only once. This is sufficient,
-/// because the longest way from a lane does not depend on the way to this lane.
+/// Finds the longest way from a lane along edges: the way with the most lanes. If several ways are
+/// equally long, the class takes the way on the rightmost lanes. If each lane leads to several
+/// lanes, there are very many ways. So the class searches each lane of an edge only once. This is
+/// sufficient, because the longest way from a lane does not depend on the way to this lane.
 class LongestWay {
  public:
   /// Function that returns the lanes from `lane` to `next`, which is a lane of the next edge.
-  /// `next` is the last of these lanes. The result is empty if no lanes lead there.
+  /// `next` is the last of these lanes. The result is empty if no lanes lead to `next`.
   using Between = Names (*)(const std::string& lane, const std::string& next);
 
   LongestWay(Names edges, Between between) : edges_(std::move(edges)), between_(between) {}
@@ -78,7 +78,7 @@ class LongestWay {
     Names begin;            // first lanes of the way, up to the lane of the next edge
   };
 
-  /// The longest way from a lane along the edges from `edge` on.
+  /// The longest way that begins at `lane` and goes along edges_, from the index `edge` on.
   const Way& Find(const std::string& lane, std::size_t edge) {
     const auto [found, is_new] = found_.try_emplace({lane, edge});
     Way& longest = found->second;

@@ -1,5 +1,5 @@
-// The lanes along which the cars of Fogline drive in SUMO's network, one after another, as one
-// axis.
+// The lanes of SUMO's network along which the cars of Fogline drive. The lanes follow each other
+// and form one axis.
 #pragma once
 
 #include <string>
@@ -14,8 +14,9 @@ struct LanePlace {
   double position_m = 0;
 };
 
-/// The lanes of a route that lead to a given lane, and from this lane onward, without a change of
-/// lane. The path includes the lanes inside of junctions.
+/// A path along a route. A car on this path never changes to a lane beside its own lane. The path
+/// contains one given lane. It begins with the lanes that lead to this lane, and ends with the
+/// lanes that follow this lane. The lanes inside of junctions belong to the path.
 class LanePath {
  public:
   struct Lane {
@@ -30,7 +31,7 @@ class LanePath {
 
   const std::vector<Lane>& lanes() const { return lanes_; }
   double length_m() const { return lanes_.back().begin_m + lanes_.back().length_m; }
-  /// The place at this distance from the beginning. @pre 0 <= along_m <= length_m()
+  /// The place at this distance from the beginning of the path. @pre 0 <= along_m <= length_m()
   LanePlace At(double along_m) const;
 
  private:

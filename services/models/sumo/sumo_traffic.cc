@@ -31,7 +31,8 @@ constexpr const char* kPrefix = "fogline.";
 // SUMO removes a car at the end of its route. So Step() refuses a host that is nearer to the end of
 // its lane than this distance.
 constexpr double kBeforeTheEnd_m = 1.0;
-// Bits of SUMO's speed mode and lane change mode: with 0, a car follows only the caller's commands.
+// Bits of SUMO's speed mode and lane change mode. If no bit is set, a car follows only the caller's
+// commands.
 constexpr int kObey = 0;
 constexpr double kFastest_mps = 100.0;
 
@@ -120,16 +121,16 @@ void SumoTraffic::Load() {
   libsumo::Simulation::step(setup_.start_s);
 }
 
-/// The first error that SUMO has written, in one line; without such an error, the error of SUMO's
-/// library. In the text, "net" and "routes" (the names in the scenario) replace the names of the
-/// files.
+/// The first error that SUMO has written, in one line. If SUMO has written no error, the result is
+/// the error of SUMO's library. In the text, "net" and "routes" (the names in the scenario) replace
+/// the names of the files.
 std::string SumoTraffic::WhyNot(const std::string& error, const std::string& said) const {
   constexpr std::string_view kError = "Error: ";
   std::string why = said.starts_with(kError) ? said.substr(kError.size()) : said;
   why.resize(std::min({why.find("\n\n"), why.find("\nError: "), why.size()}));
   while (why.ends_with('\n')) why.pop_back();
   if (why.empty()) why = error;
-  std::erase(why, '\n');  // the next line begins with a space
+  std::erase(why, '\n');  // the next line of SUMO's text begins with a space
   if (!files_) return why;
   for (const auto& [file, name] :
        {std::pair(files_->net.path(), "net"), std::pair(files_->routes.path(), "routes")}) {
@@ -178,9 +179,10 @@ void SumoTraffic::Enter(std::span<const models::Motion> cars) {
   ahead_ = behind;
 }
 
-/// Gives SUMO the places and speeds of Fogline's cars. moveTo() must come before
-/// setPreviousSpeed(), because moveTo() keeps the speed that SUMO computed. moveToXY() would move a
-/// car only at the end of SUMO's next step (SUMO's issues 8661 and 11091).
+/// Gives SUMO the places and speeds of Fogline's cars. moveTo() leaves a car with the speed that
+/// SUMO computed. So setPreviousSpeed() must come after moveTo(), to set the right speed.
+/// moveToXY() is not used, because it would move a car only at the end of SUMO's next step (SUMO's
+/// issues 8661 and 11091).
 void SumoTraffic::Move(std::span<const models::Motion> cars) const {
   for (std::size_t i = 0; i < cars.size(); ++i) {
     const LanePlace place = path_->At(Along(cars[i]));

@@ -50,7 +50,7 @@ class SumoTraffic final : public models::Traffic {
   std::optional<Files> files_;
   std::optional<LanePath> path_;
   double origin_m_ = 0;             // place on the path at which Fogline's positions are 0
-  std::vector<std::string> names_;  // of Fogline's cars in SUMO
+  std::vector<std::string> names_;  // names of Fogline's cars in SUMO
   std::string ahead_;               // name of the car ahead of the host
 };
 

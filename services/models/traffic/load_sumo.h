@@ -12,7 +12,7 @@
 
 namespace fogline::models {
 
-/// Path of the module: ../lib/fogline/sumo.so, seen from the folder of the running program.
+/// Path of the module: ../lib/fogline/sumo.so, relative to the folder of the running program.
 std::filesystem::path SumoModule();
 
 /// Loads SUMO; the simulation itself begins with Traffic::Begin(). A process runs one simulation at

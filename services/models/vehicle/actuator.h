@@ -10,13 +10,13 @@ namespace fogline::models {
 ///
 ///     tau dF/dt = u(t - D) - F
 ///
-/// solved exactly for a demand u that is constant within a step. D may be any time, not only whole
-/// steps, so the demand that arrives may change once within the step. For each piece of length t
-/// with a constant arriving demand u:
+/// solved exactly for a demand u that is constant within a step. D need not be a whole number of
+/// steps, so the demand that arrives may change once within a step. For each piece of length t with
+/// a constant arriving demand u:
 ///
 ///     F(t) = u + (F(0) - u) e^(-t/tau)        integral = u t + (F(0) - u) tau (1 - e^(-t/tau))
 ///
-/// There is no error of discretisation, so a smaller step changes F only by rounding.
+/// The solution has no error of discretisation, so a smaller step changes F only by rounding.
 class Actuator {
  public:
   /// Longest delay in steps.
@@ -28,7 +28,7 @@ class Actuator {
   /// steps.
   Actuator(double delay_s, double lag_s, double step_s);
 
-  /// Sets the state that the actuator has after a long time with this demand.
+  /// Sets the actuator to the state that it reaches after a long time with this demand.
   void Settle(double demand_n);
 
   /// Advances by one step with this demand. Returns the mean force over the step.

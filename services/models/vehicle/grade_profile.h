@@ -8,9 +8,9 @@
 
 namespace fogline::models {
 
-/// The grade of the road at each position. Between points the grade is interpolated linearly;
-/// before the first and after the last point it is constant. Without points the road is level.
-/// Copies share the points, which never change.
+/// The grade of the road at each position. Between points the grade is interpolated linearly.
+/// Before the first point and after the last point, the grade is constant. Without points the road
+/// is level. Copies share the points, which never change.
 class GradeProfile {
  public:
   GradeProfile() = default;

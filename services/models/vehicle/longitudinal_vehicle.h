@@ -28,13 +28,14 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 ///   no limit is reached and the demand is outside the pedals' dead band (pedals.h).
 /// - Traction and brake each have delay and lag (actuator.h).
 /// - Engine: F_t <= min(m a_traction, P / v). Brakes: F_b <= m a_brake.
-/// - Tyres: they transmit m dv/dt + drag + slope, without the rolling resistance and the inertia of
-///   the wheels. This force is at least -mu m g cos(theta), and at most mu m g cos(theta) times the
-///   driven share.
+/// - Tyres: they transmit the force m dv/dt + drag + slope, which does not contain the rolling
+///   resistance and the inertia of the wheels. This force is at least -mu m g cos(theta), and at
+///   most mu m g cos(theta) times the driven share.
 ///
-/// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan). The slope and
-/// the power limit are taken from the middle of the step. The remaining error is of second order in
-/// the step. Cars do not roll backwards, because the brakes hold a car at rest.
+/// Within a step, traction and brakes act with their mean forces, so that v(t) has a closed form
+/// (tanh or tan). The slope and the power limit are taken from the middle of the step. The
+/// remaining error is of second order in the step. Cars do not roll backwards, because the brakes
+/// hold a car at rest.
 ///
 /// Not thread-safe. Only the constructor allocates memory.
 class LongitudinalVehicle {
@@ -50,8 +51,8 @@ class LongitudinalVehicle {
 
   /// Advances by one step of step_s with this command. Returns an acceleration that is constant
   /// over the step, or up to the moment at which the car comes to rest. Advance(now, result,
-  /// step_s) then gives the car's motion at the end of the step. Several calls of Advance() for
-  /// parts of the step give the same motion.
+  /// step_s) then gives the car's motion at the end of the step. If the step is divided into parts
+  /// with one call of Advance() each, the motion is the same.
   /// @param now position and speed of the car, as Advance() has computed them
   double Step(double command_mps2, const Motion& now);
 
@@ -91,7 +92,7 @@ class LongitudinalVehicle {
   Actuator brake_;
   double traction_n_ = 0;
   double brake_n_ = 0;
-  double last_mps2_ = 0;  // result of the last Step(); after Begin(), its command
+  double last_mps2_ = 0;  // result of the last Step(), or command of Begin()
 };
 
 }  // namespace fogline::models

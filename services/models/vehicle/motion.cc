@@ -8,8 +8,8 @@ namespace fogline::models {
 namespace {
 
 // Smallest t >= 0 with gap + rate t + curvature t^2 / 2 = 0, where gap is above 0. The result is
-// infinite if there is no such t. The function uses the form of the root that adds numbers of the
-// same sign. So there is no cancellation.
+// infinite if there is no such t. Of two equivalent formulas for the root, the function uses the
+// formula that adds numbers of the same sign. So there is no cancellation.
 double FirstRoot(double gap, double rate, double curvature) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double discriminant = rate * rate - 2.0 * curvature * gap;
@@ -37,8 +37,8 @@ Motion Advance(const Motion& from, double acceleration_mps2, double duration_s) 
 std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
                                     double ahead_acceleration_mps2, double behind_speed_mps,
                                     double behind_acceleration_mps2, double duration_s) {
-  // In most cases the gap is longer than the way that the car behind can drive, so there is no
-  // contact. The factor 2 covers rounding.
+  // In most cases the gap is longer than the distance that the car behind can drive within
+  // duration_s, so there is no contact. The factor 2 covers rounding.
   const double fastest_mps =
       behind_speed_mps + std::max(0.0, behind_acceleration_mps2) * duration_s;
   if (gap_m > 2.0 * fastest_mps * duration_s) return std::nullopt;

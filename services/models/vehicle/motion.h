@@ -21,9 +21,9 @@ double TimeToRest(double speed_mps, double acceleration_mps2);
 Motion Advance(const Motion& from, double acceleration_mps2, double duration_s);
 
 /// First time in [0, duration_s] at which the gap between two cars is closed; nullopt if the gap
-/// stays open; 0 if the gap is closed at the beginning. Each car keeps its acceleration until the
-/// car rests. Between the moments at which a car comes to rest, the gap is a parabola, whose first
-/// root has a closed form.
+/// stays open; 0 if the gap is closed at the beginning. Each car keeps its acceleration until it
+/// rests. Between the moments at which a car comes to rest, the gap is a parabola, whose first root
+/// has a closed form.
 std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
                                     double ahead_acceleration_mps2, double behind_speed_mps,
                                     double behind_acceleration_mps2, double duration_s);

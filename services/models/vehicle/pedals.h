@@ -13,9 +13,9 @@ struct PedalDemand {
 /// The pedals of a driver with one foot, which uses only one pedal at a time. The foot goes from
 /// the throttle to the brake when the demanded force falls below -band. The foot goes back when the
 /// force rises above band. Between these limits, the foot stays on its pedal. If this pedal cannot
-/// give the demanded force, the car coasts. So a demand that changes sign within the band moves the
-/// foot at most once. While the car coasts for this reason, the force has an error of at most the
-/// band.
+/// give the demanded force, the car coasts. So a demand that changes its sign, but stays within the
+/// band, does not move the foot. While the car coasts in this way, the error of the force is at
+/// most the band.
 class Pedals {
  public:
   /// @param band_n at least 0

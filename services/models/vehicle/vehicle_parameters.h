@@ -7,13 +7,13 @@
 namespace fogline::models {
 
 /// Parameters of a vehicle that drives straight ahead. The defaults are the sedan. If no published
-/// figure was available, the source says "estimate": a usual value of our choice.
+/// value was available, the comment says "estimate". An estimate is a usual value of our choice.
 struct VehicleParameters {
   /// m in kg, 500 to 60,000. Sedan: estimate, a mid-size car with its driver.
   double mass_kg = 1500.0;
 
-  /// m_eff / m, 1 to 1.5: rotating parts have to be accelerated as well. Estimate; 1.03 to 1.1 is
-  /// usual for cars in the higher gears.
+  /// m_eff / m, 1 to 1.5. m_eff is larger than m, because the car also accelerates its rotating
+  /// parts. Estimate; 1.03 to 1.1 is usual for cars in the higher gears.
   double rotating_mass_factor = 1.05;
 
   /// c_d, 0 to 1.5. Sedan: estimate, the middle of 0.28 to 0.32.
@@ -63,9 +63,9 @@ struct VehicleParameters {
 /// A sedan: all parameters have their defaults.
 inline constexpr VehicleParameters kSedan{};
 
-/// A light car. m is the mass of the BMW 320i in the CommonRoad vehicle models (vehicle 2). P
-/// follows from the acceleration limit of these models above the switching speed: 1093 kg * 11.5
-/// m/s2 * 7.319 m/s = 92 kW. The other values are estimates.
+/// A light car. m is the mass of the BMW 320i in the CommonRoad vehicle models (vehicle 2). Above
+/// their switching speed of 7.319 m/s, these models limit the power of the acceleration. P is this
+/// limit: 1093 kg * 11.5 m/s2 * 7.319 m/s = 92 kW. The other values are estimates.
 inline constexpr VehicleParameters kCompact{
     .mass_kg = 1093.0,
     .drag_coefficient = 0.31,
@@ -77,8 +77,8 @@ inline constexpr VehicleParameters kCompact{
 /// A loaded tractor with semi-trailer. m is the European limit for five axles (Directive 96/53/EC,
 /// 40 t). c_d and A: a tractor of Auburn University's GAVLAB in its published parameter files
 /// (0.79, 7.80 m2); c_r: 0.0098, from the Peterbilt trucks of the same laboratory. The other values
-/// are estimates. The brakes are stronger than the 5.0 m/s2 that UN R13 requires of heavy trucks,
-/// and slow, because they use compressed air.
+/// are estimates. The brakes are stronger than the 5.0 m/s2 that UN R13 requires of heavy trucks.
+/// The brakes are slow, because they use compressed air.
 inline constexpr VehicleParameters kTruck{
     .mass_kg = 40e3,
     .rotating_mass_factor = 1.1,

@@ -24,7 +24,7 @@ constexpr Duration kPartsEvery = milliseconds(10);
 constexpr Duration kAskRecorderEvery = milliseconds(5);
 // In real time, a STATUS is refused if its step is more than this many steps above the number of
 // periods since the run began. One step is needed because a world that is started again takes its
-// first step immediately, and not a period after the last step of the process before it. The other
+// first step immediately, and not one period after the last step of the earlier process. The other
 // step is a margin.
 constexpr std::int64_t kEarly = 2;
 
@@ -247,8 +247,8 @@ void RunCoordinator::OnStatus(const status_t& heard) {
                             status.pid, status.host));
   }
   // Each instance is compared with its own last step. So the steps of a process that was started
-  // again and catches up count as progress, although the role's process before it had reached a
-  // later step.
+  // again and catches up count as progress, although the role's earlier process had reached a later
+  // step.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
   signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
@@ -290,8 +290,8 @@ void RunCoordinator::OnDone() {
 }
 
 void RunCoordinator::OnFailure(Role role, const status_t& status) {
-  // In real time the cars keep moving. The failed role counts as lost, and the other roles have
-  // fallbacks for this case.
+  // A run in real time goes on if a role fails, except if the world or the recorder fails. The
+  // failed role counts as lost, and the other roles have fallbacks for this case.
   if (GoesOnWithout(role)) return;
   Fail(fmt::format("{}: {}", status.role, status.error));
 }
@@ -301,8 +301,8 @@ void RunCoordinator::OnResend(Bytes bytes) {
   if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
   if (resend.header.run_id != options_.run_id) return Refuse(&status_t::foreign);
   if (resend.channel != ChannelOf<run_t>().name) return;
-  // A role that misses one part usually misses most parts, so this part and all later parts are
-  // sent.
+  // A role that lacks one part of the scenario usually lacks most parts, so the runner sends this
+  // part and all later parts.
   const TimePoint now = Clock::now();
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
@@ -328,7 +328,8 @@ void RunCoordinator::Announce(std::int8_t phase, std::size_t part, std::int64_t 
   run.minimal_risk = minimal_risk_;
   run.stall_ms = Milliseconds(options_.stall_limit);
   for (const RoleInfo& info : kRoles) {
-    // RUN names a role that the runner starts itself only if another process claims this role.
+    // The runner starts some roles itself. RUN names such a role only if another process claims the
+    // role.
     const std::int64_t holder = HolderOf(info.role, now);
     if (!IsExternal(info.role) && !(member(info.role).rival && holder != 0)) continue;
     run.external.emplace_back(info.name);
@@ -351,7 +352,7 @@ std::string RunCoordinator::HindranceOf(Role role) const {
 }
 
 std::string RunCoordinator::Culprit(TimePoint now) const {
-  // Follow the chain of waiting roles from the world to the first role that does not say what it
+  // Follows the chain of waiting roles from the world to the first role that does not say what it
   // waits for. `stuck` is the step that the current role of the chain cannot complete.
   std::int64_t stuck = step() + 1;
   Role waiting = Role::kWorld;
@@ -367,8 +368,8 @@ std::string RunCoordinator::Culprit(TimePoint now) const {
     const ChannelInfo* channel = place < kNumChannels ? &kChannels[place] : nullptr;
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
-    // The chain ends before a producer that has already computed the awaited step, because this
-    // producer waits for something else.
+    // If the producer has already computed the step for which the consumer waits, the chain ends at
+    // the consumer. What the producer itself waits for does not explain why the consumer waits.
     const bool done = channel != nullptr && source.status &&
                       source.status->header.step >= stuck - LagOf(producer, waiting);
     const bool passes_on = source.status && HeldAgainst(source.heard, now) <= kSilent && !done &&

@@ -1,6 +1,7 @@
 // The coordinator of a run, a part of the runner. It announces the scenario, waits until every role
 // is ready, and lets the world start. It reads the STATUS of every role, and tells a late role the
-// step that the run has reached. If a step does not complete, the coordinator names the culprit.
+// step that the run has reached. If a step does not complete, the coordinator names the role that
+// is to blame.
 #pragma once
 
 #include <array>
@@ -55,28 +56,27 @@ class RunCoordinator {
 
   RunCoordinator(Bus& bus, RunCoordinatorOptions options);
 
-  /// Does the work that is due. Call it after every Bus::Wait(). @return the latest time for the
-  /// next call
+  /// Does the work that is due. Call this function after every Bus::Wait(). @return the latest time
+  /// for the next call
   TimePoint Poll(TimePoint now);
 
   /// Notes that the runner reads the clock. If two readings are far apart, the runner itself was
-  /// held up, for example by a slow disk or Ctrl-Z. The time between these readings does not count
+  /// paused, for example by a slow disk or Ctrl-Z. The time between these readings does not count
   /// against any role.
   void Attend(TimePoint now) { pauses_.Attend(now); }
   /// The time since `since` in which this process could have received a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// The probability that no message of a living role comes during the time `silence`, because the
-  /// network loses all of the role's messages.
+  /// The probability that the network loses all messages that a living role sends in the time
+  /// `silence`. If the probability is very small, the silent role is probably dead.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
-  /// The channel on which the role is deaf; nullopt if the role is not deaf, or the run is not in
-  /// real time.
+  /// The channel on which the role is deaf: the role receives no message, although the producer
+  /// sends messages. nullopt if the role is not deaf, or the run is not in real time.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
-  /// The longest time for which the runner was held up since the last call; 0 if it was not held
-  /// up.
+  /// The longest pause of the runner since the last call; 0 if there was no pause.
   Duration TakeLongestPause() { return pauses_.TakeLongest(); }
 
   Phase phase() const { return phase_; }
@@ -105,7 +105,7 @@ class RunCoordinator {
   std::vector<SendTrouble> SendTroubles() const;
   /// What is wrong with keys and signatures; "" if no trouble is known.
   std::string KeyTrouble() const;
-  /// The processes of other runs that send on this network.
+  /// The processes that send on this network but are not part of the run.
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
@@ -180,9 +180,10 @@ class RunCoordinator {
   // A role without a STATUS for this long (five heartbeats) counts as silent.
   static constexpr Duration kSilent = milliseconds(1000);
 
-  /// Whether each role that is not ready prepares for the run: its last STATUS was WAITING, and the
-  /// role has been silent for at least kSilent since then. Such a role may, for example, load the
-  /// network of SUMO. False if some role has sent no STATUS at all.
+  /// Whether each role is either ready or busy with its preparation for the run. A busy role sends
+  /// nothing. So a role counts as busy if its last STATUS says WAITING and came more than kSilent
+  /// ago. For example, the role may be loading the road network of SUMO. Returns false if a role
+  /// has sent no STATUS at all.
   bool AllPrepare(TimePoint now) const;
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
@@ -191,7 +192,8 @@ class RunCoordinator {
   /// Ends the run when the world is done and, in lockstep, the recorder's report includes the last
   /// step. The runner then compares the log with this report.
   void FinishWhenRecorded(TimePoint now);
-  /// Ends the run. The run fails if a role is deaf at the end of the run.
+  /// Ends the run. The run fails if at its end a role is deaf: it has received no message on a
+  /// channel, although the producer has sent messages.
   void OnDone();
   /// Handles a role's report of its failure.
   void OnFailure(Role role, const status_t& status);
@@ -228,7 +230,7 @@ class RunCoordinator {
   void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
   /// Why the role is missing, as the end of an error text; "" if no reason is known.
   std::string HindranceOf(Role role) const;
-  /// The line that says which role holds up the run.
+  /// The error line that names the role for which the run waits.
   std::string Culprit(TimePoint now) const;
 
   Bus& bus_;

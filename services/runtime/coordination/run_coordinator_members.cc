@@ -153,7 +153,7 @@ void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now, const 
     deaf_.Forget(role);
   }
   member.rival.reset();
-  progressed_ = now;  // the restart is under way, so the stall limit counts from now
+  progressed_ = now;  // a restart may follow, so the stall limit counts from now
 }
 
 bool RunCoordinator::AllPrepare(TimePoint now) const {

@@ -1,7 +1,7 @@
 // If no message of a process comes, either the process sends no messages, or the network loses
 // them. This class computes the probability that the network loses all messages of a living
 // process. All processes send at the same intervals over the same network. So the probability
-// follows from the share of the other processes' messages that is lost.
+// follows from the share of lost messages among the messages of the other processes.
 #pragma once
 
 #include <algorithm>
@@ -44,9 +44,9 @@ class SignsOfLife {
     const auto heard = static_cast<double>(heard_ - last.heard);
     const auto lost = static_cast<double>(lost_ - last.lost);
     // The share of lost messages is the larger of two estimates. The first estimate compares the
-    // number of received messages with the least number of messages that the other roles have sent.
-    // The second estimate uses the number of messages that are known to be lost, because their
-    // sequence numbers are missing.
+    // number of received messages with the smallest number of messages that the other roles can
+    // have sent. The second estimate uses the number of messages that are known to be lost, because
+    // their sequence numbers are missing.
     const double share_lost =
         std::max(1 - heard / (static_cast<double>(others) * signs), lost / (heard + lost));
     return std::pow(std::clamp(share_lost, 0.0, 1.0), signs);

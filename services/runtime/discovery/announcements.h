@@ -37,8 +37,9 @@ struct Announcement {
   std::string Text() const;
 };
 
-/// All runs that are announced. LCM has no access control. A beacon that a runner on this machine
-/// cannot have sent is therefore refused, and the number of remembered runs is limited.
+/// All runs that are announced. LCM has no access control, so any program can send a beacon. This
+/// class therefore refuses a beacon that no runner of this machine can have sent, and limits the
+/// number of runs that it remembers.
 class Announcements {
  public:
   /// @param host name of this machine; a beacon does not leave its machine, so a beacon with
@@ -54,7 +55,8 @@ class Announcements {
   /// How many beacons were refused.
   std::int64_t refused() const { return refused_; }
 
-  /// A run without a beacon for this long (six beacons) counts as ended.
+  /// A run counts as ended if its last beacon is older than kGone. Six beacons are due in this
+  /// time.
   static constexpr Duration kGone = 6 * kBeaconEvery;
   /// The largest number of runs that are remembered. A further run replaces the run with the fewest
   /// beacons. So invented runs with one beacon each do not displace a run that continues to

@@ -30,8 +30,8 @@ std::string TitleOf(const std::string& scenario) {
 }  // namespace
 
 Beacon::Beacon(Announcement run)
-    // MeetingSender sends nothing if it is given the meeting address. So it is given the meeting
-    // address if the run's URL must not be announced.
+    // A MeetingSender whose network is the meeting address sends nothing. If the run's URL must not
+    // be announced, sender_ becomes such a MeetingSender.
     : sender_(MayBeAnnounced(run.url) ? run.url : MeetingUrl()) {
   beacon_.header.run_id = run.run_id;
   beacon_.began_us = WallMicroseconds();

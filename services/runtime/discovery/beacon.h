@@ -16,16 +16,15 @@ namespace fogline::runtime {
 
 /// Sends the beacons of a run. If a beacon cannot be sent, the run goes on without it. A beacon
 /// stays on this machine (ttl=0), even if the meeting address has another ttl. A beacon is never
-/// signed, even if the run has a key. A beacon tells only where the run is, and the messages of the
-/// run itself are verified.
+/// signed, even if the run has a key. A signature is not necessary: a beacon tells only where the
+/// run is, and the signatures of the run's own messages are verified.
 class Beacon {
  public:
   /// Makes the beacons of `run`. Nothing is sent in three cases:
   /// - The run is at the meeting address itself.
   /// - Programs must not follow a beacon to the run's URL (MayBeAnnounced()).
   /// - The meeting address is not a multicast group, or has no route.
-  /// @param run the run; the constructor fills in its host, its process and the time of its
-  ///     beginning
+  /// @param run the run; the constructor itself determines host, pid and began_us
   explicit Beacon(Announcement run);
   /// Announces that the run is over.
   ~Beacon();

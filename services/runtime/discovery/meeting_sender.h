@@ -10,8 +10,9 @@ struct _lcm_t;
 
 namespace fogline::runtime {
 
-/// Sends messages that stay on this machine (ttl=0), even if the meeting address has another ttl.
-/// The messages are never signed. A message that cannot be sent is lost.
+/// Sends messages to the meeting address (MeetingUrl()). The messages stay on this machine (ttl=0),
+/// even if the meeting address has another ttl. The messages are never signed. A message that
+/// cannot be sent is lost.
 class MeetingSender {
  public:
   /// Sends nothing if `own_url` is the meeting address itself, or if the meeting address is not a

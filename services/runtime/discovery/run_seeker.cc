@@ -34,8 +34,8 @@ bool RunSeeker::InVain(TimePoint now) {
   const std::vector<Announcement> runs = listener_.Runs();
   const bool announced =
       std::ranges::find(runs, tried_->run_id, &Announcement::run_id) != runs.end();
-  // Until kGone has passed since this object was made, a run may go on although its announcement
-  // has not come yet.
+  // The announcement of a run may come as late as kGone after this object was made. Until then, a
+  // missing announcement does not show that the run is over.
   const bool would_know = pauses_.HeldAgainst(began_, now) > Announcements::kGone;
   return pauses_.HeldAgainst(tried_->at, now) > kSilentLimit || (would_know && !announced);
 }

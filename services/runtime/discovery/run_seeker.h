@@ -15,24 +15,27 @@ namespace fogline::runtime {
 
 class RunSeeker {
  public:
-  /// @throws InputError in the cases of Bus()
+  /// @throws InputError like Bus()
   RunSeeker(Role role, const std::string& meeting_url)
       : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
-  /// Looks for a run to join. Call it while the role has no run, or its runner is silent.
+  /// Looks for a run to join. Call this function while the role has no run, or while its runner is
+  /// silent.
   /// @return the run to join now: the newest run that waits for this role and was not tried in
   ///     vain; nullopt if there is no such run, or if the role already tries to join a run
   std::optional<Announcement> Look(TimePoint now);
 
   /// Whether the role has gone to the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the announced run is over, or the role has tried for longer than kSilentLimit to join
-  /// it. The role then goes back to the meeting address. Call it while the role has not joined.
+  /// Whether the try to join an announced run has failed: the run is over, or the try has lasted
+  /// for longer than kSilentLimit. After a failed try the role goes back to the meeting address.
+  /// Call this function while the role has not joined.
   bool InVain(TimePoint now);
   /// Gives up the run that was tried last: Look() does not return this run for the time kTryAgain.
   /// In this time the role can join a run at the meeting address itself. The exclusion ends earlier
-  /// if an announcement says that the run does not wait for the role. If the run then waits for the
-  /// role again, the role has become free since the failed try.
+  /// if an announcement says that the run does not wait for the role, because another process has
+  /// the role. If a later announcement says that the run waits again, the role has become free, and
+  /// a new try can succeed.
   void GiveUp(TimePoint now);
   /// From now on, Look() does not return this run, because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
@@ -43,10 +46,10 @@ class RunSeeker {
   // After this time InVain() is true. A runner that waits for roles sends 20 messages a second. We
   // assume that a busy machine or a bad network delays these messages by less than this time.
   static constexpr Duration kSilentLimit = milliseconds(5000);
-  // After this time a run that was tried in vain is tried again. A busy machine may have held up
+  // After this time a run that was tried in vain is tried again. A busy machine may have delayed
   // the run, or the port of the run's network may have been in use by another program for a moment.
   static constexpr Duration kTryAgain = milliseconds(5000);
-  // A limit, so that invented runs do not fill the memory.
+  // The largest size of in_vain_. With this limit, invented runs cannot fill the memory.
   static constexpr std::size_t kMaxInVain = 64;
 
   struct Try {

@@ -22,8 +22,8 @@ inline constexpr std::string_view kWaitingChannel = "FOGLINE_WAITING";
 /// The interval at which a waiting role sends its STATUS.
 inline constexpr Duration kWaitingEvery = milliseconds(500);
 
-/// Sends the STATUS of a waiting role to two networks: to the network on which the role waits, with
-/// the ttl of this network, and to the meeting address.
+/// Sends the STATUS of a waiting role on the network on which the role waits. Sends it also to the
+/// meeting address (MeetingSender), where programs without a URL listen.
 class WaitingNotice {
  public:
   bool Due(TimePoint now) const { return now >= due_; }
@@ -59,12 +59,13 @@ class WaitingRoles {
  public:
   void Hear(Bytes bytes, TimePoint now);
 
-  /// The roles that still wait, in the order of kRoles, and by host and process.
+  /// The roles that still wait, sorted by role (in the order of kRoles), host and process.
   std::vector<WaitingRole> Current(TimePoint now) const;
   /// The number of messages that are not a valid STATUS of this build.
   std::int64_t undecodable() const { return undecodable_; }
 
-  /// A role without a message for this long (six messages) counts as gone.
+  /// A role counts as gone if its last message is older than kGone. Six messages are due in this
+  /// time.
   static constexpr Duration kGone = 6 * kWaitingEvery;
   /// The largest number of roles that are remembered. A further role replaces the role that has
   /// been silent for the longest time.

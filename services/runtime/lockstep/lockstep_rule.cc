@@ -66,7 +66,7 @@ void LockstepRule::OnProgress() {
 }
 
 void LockstepRule::OnAskedAhead(std::int64_t step, TimePoint now) {
-  // A request may name a wrong step, so its effect is limited.
+  // A request may name a step that is much too high, so the expected step is limited.
   Expect(std::min(step, next() + kRingSteps - 1));
   // A role that catches up has already asked for its inputs.
   if (!CatchingUp() && now - retry_.asked() >= kMinBetweenAsks) AskForMissing(now);
@@ -122,7 +122,7 @@ TimePoint LockstepRule::Repair(TimePoint now) {
 
 void LockstepRule::AskForMissing(TimePoint now) {
   retry_.Asked(now);
-  // Asks for the steps up to the newest step that is known to be under way. The size of the rings
+  // Asks for the steps up to the newest step that is known to have begun. The size of the rings
   // limits the number of these steps.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : parts_.inputs.all()) {

@@ -1,11 +1,11 @@
-// The rule in lockstep. A node stores a ring of messages per input. It computes step k exactly
-// once, when all its inputs for step k have come, in any order. It encodes its outputs once and
-// stores the bytes. No message is sent again without a request: a node that lacks an input asks for
-// it (RESEND). If a node cannot compute a requested output yet, it asks for its own inputs. So any
-// loss below 100 % only costs time.
+// The rule (fire_rule.h) that decides in lockstep when a node computes a step. A node stores a ring
+// of messages per input. It computes step k exactly once, when all its inputs for step k have come,
+// in any order. It encodes its outputs once and stores the bytes. No message is sent again without
+// a request: a node that lacks an input asks for it (RESEND). If a node cannot compute a requested
+// output yet, it asks for its own inputs. So any loss below 100 % only costs time.
 //
-// Catching up. RUN says which step the world has reached. A node that joins late, for example
-// because the role's earlier process was killed, computes all steps from step 0 on, and asks for
+// Catching up. RUN says which step the world has reached. A node joins late if, for example, the
+// role's earlier process was killed. A late node computes all steps from step 0 on, and asks for
 // the inputs of many steps at a time. The recorder sends old inputs, and the producers send the
 // newest inputs. The node does not publish old outputs, because the recorder has them.
 //
@@ -43,7 +43,7 @@ class LockstepRule final : public FireRule {
   StepRing::Verdict Judge(const Input& input, std::int64_t step, Bytes bytes) const;
   /// The first input that the next step waits for; nullptr if no input is missing.
   const Input* FirstMissing() const;
-  /// The first step of an input that the role still needs.
+  /// The lowest step of this input whose message the role still needs.
   std::int64_t FirstNeeded(const Input& input) const;
   /// Computes every step that can be computed.
   void Advance(TimePoint now);
@@ -60,7 +60,7 @@ class LockstepRule final : public FireRule {
 
   Parts& parts_;
   StepGate* const gate_;
-  std::int64_t expected_;    // highest step that is known to be under way
+  std::int64_t expected_;    // highest step that is known to have begun
   std::int64_t late_;        // a late role catches up until it has computed this step
   std::int64_t asked_ = -1;  // last step for whose inputs the role has asked
   RetryTimer retry_;

@@ -9,7 +9,7 @@
 namespace fogline::runtime {
 namespace {
 
-// The largest simulated time of a run. A step is a second at most (scenario field step_s).
+// The largest simulated time of a run. A step lasts one second at most (scenario field step_s).
 constexpr std::int64_t kMaxTime_us = kMaxStep * 1'000'000;
 
 // The counters that Fogline adds up or compares. The counters of refusals are in kRefusals.

@@ -38,8 +38,8 @@ class RetryTimer {
 
   /// Notes that the step has been computed.
   void Computed(TimePoint now) {
-    // The duration of a step with a repair does not show how long a step usually takes, so it is
-    // left out of the average (Karn & Partridge 1987).
+    // If the node had to ask for an input of the step, the duration of the step does not show how
+    // long a step usually takes. So it is left out of the average (Karn & Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
       const Duration took = now - computed_;
       step_time_ += (took - step_time_) / (took < step_time_ ? kDown : kUp);
@@ -59,8 +59,8 @@ class RetryTimer {
   static constexpr Duration kShortest = milliseconds(2);
   static constexpr Duration kLongest = milliseconds(10);
   // A new step changes the smoothed duration of a step by a part of the difference: by 1/kDown if
-  // the new step was shorter, and by 1/kUp if it was longer. Longer steps count less, because
-  // repairs of other roles make steps longer, too.
+  // the new step was shorter, and by 1/kUp if it was longer. Longer steps count less, because a
+  // step also takes longer if another role has to ask for an input.
   static constexpr int kDown = 2;
   static constexpr int kUp = 64;
 

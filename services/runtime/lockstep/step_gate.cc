@@ -7,7 +7,8 @@ namespace {
 
 constexpr Duration kFirstRetryInterval = milliseconds(20);
 constexpr Duration kMaxRetryInterval = milliseconds(500);
-// A step is due at most this long (three years) after the start, even at the slowest pace.
+// No step is due later than this time (three years) after the start. Without this limit, times
+// could overflow at a very slow pace.
 constexpr double kLongest_s = 1e8;
 
 }  // namespace
@@ -22,8 +23,8 @@ StepGate::StepGate(Bus& bus, status_t& own) {
     }
     // If the recorder has failed, the step that it reports may not be on disk.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
-    // If no process of the world has begun this step in this run yet, the recorder cannot have the
-    // step, so the STATUS is refused.
+    // The recorder cannot have a step that no world process of this run has begun. A STATUS with
+    // such a step is refused.
     if (status->header.step > std::max(own.header.step, begun_before_)) {
       ++own.out_of_window;
       return;

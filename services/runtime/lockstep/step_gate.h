@@ -33,11 +33,12 @@ class StepGate {
   bool Finished(std::int64_t next) const {
     return final_ && next > *final_ && recorded_ >= *final_;
   }
-  /// The step that the recorder must have on disk before step `next` can begin, if a request for
-  /// the recorder's STATUS is due. nullopt if `next` does not wait for the recorder, or if no
-  /// request is due.
+  /// Whether to request the recorder's STATUS now.
+  /// @return the step that must be on disk before step `next` can begin; nullopt if `next` does not
+  ///     wait for the recorder, or if no request is due
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
-  /// When the result of Open() or WantsRecorded() may next change although no message comes.
+  /// The next time at which the result of Open() or WantsRecorded() may change without a new
+  /// message.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;
 
  private:

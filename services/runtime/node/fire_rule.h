@@ -28,7 +28,7 @@ class FireRule {
   virtual TimePoint Poll(TimePoint now) = 0;
   /// Called when a RUN has reported the progress of the run (RunNews::progress).
   virtual void OnProgress() {}
-  /// Notes that this step is under way.
+  /// Notes that the run has reached this step.
   virtual void Expect(std::int64_t /*step*/) {}
   /// Called when another process asks for the output of a step that this role has not computed yet.
   virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}

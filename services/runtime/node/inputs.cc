@@ -12,8 +12,8 @@
 namespace fogline::runtime {
 namespace {
 
-/// The counter for the reason why the bytes are not a valid message of the channel; nullptr if they
-/// are valid.
+/// The counter in status_t for the kind of error in the bytes; nullptr if the bytes are a valid
+/// message of the channel.
 RefusalCounter WrongOn(std::size_t channel, Arrival& arrival) {
   static const auto wrong = std::apply(
       [](const auto&... each) {

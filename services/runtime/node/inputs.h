@@ -1,6 +1,6 @@
 // The inputs of a role: the channels that the role reads, and the last steps of each channel. A
 // message is refused if it is of another run, of another type, or of a step that the run does not
-// have. The rule (fire_rule.h) decides which other messages are stored.
+// have. The role's FireRule (fire_rule.h) decides which other messages are stored.
 #pragma once
 
 #include <cstdint>
@@ -39,25 +39,27 @@ class Inputs {
  public:
   Inputs(const Inputs&) = delete;  // the bus refers to this object
   Inputs& operator=(const Inputs&) = delete;
-  /// Subscribes to the role's inputs, except the inputs on demand. The recorder reads every kStep
-  /// channel.
-  /// @param rule the role's rule, null until the role has joined
+  /// Subscribes to the channels that the role reads in every scenario. The recorder reads every
+  /// channel that has a message in each step (Pace::kStep).
+  /// @param rule decides which messages are stored; null until the role has joined a run
   Inputs(Bus& bus, Role role, const RunNews& run, OwnStatus& own,
          const std::unique_ptr<FireRule>& rule);
 
-  /// The role's inputs in the order of kChannels. Inputs on demand come last. References are valid
-  /// until the next ReadOnDemand().
+  /// The role's inputs in the order of kChannels. Inputs that ReadOnDemand() has added come last.
+  /// References are valid until the next ReadOnDemand().
   std::span<Input> all() { return inputs_; }
   std::span<const Input> all() const { return inputs_; }
   /// The input of a channel (an index in kChannels). @pre the role reads the channel
   Input& Of(std::size_t channel);
-  /// Subscribes to this channel, too. Call it in Work::Join().
+  /// Subscribes to a channel that the role reads only in some scenarios. Call this function in
+  /// Work::Join() if the scenario of the run needs the channel.
   Input& ReadOnDemand(std::size_t channel);
 
-  /// Carries out the rule's verdict on a message of an input, and counts the message if it is
-  /// refused. In lockstep, the role fails if two messages of the same step and channel have
-  /// different bytes.
-  /// @return true if the message is new and valid; the input has then stored the message
+  /// Stores a message of an input if `verdict` permits this and the message is valid. Counts the
+  /// message if it is refused. In lockstep, the role fails if two messages of the same step and
+  /// channel have different bytes.
+  /// @param verdict what the role's FireRule has decided about the message
+  /// @return whether the message was stored
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
   /// Stores a message that the recorder has read from the log of an earlier recorder process.
   void Remember(std::size_t input, std::int64_t step, Bytes bytes);

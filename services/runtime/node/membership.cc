@@ -55,8 +55,8 @@ TimePoint Membership::Poll(TimePoint now) {
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
   // A role without a run only sends notices that it waits, so it does not fail. A role in real time
-  // does not fail either: the other roles go on without it, and the runner decides how long it may
-  // be silent.
+  // does not fail either: the other roles go on without it, and the runner decides how long the
+  // role may be silent.
   if (own_.left() || !run_.id || run_.realtime || !failed.since ||
       !runner_.Stalled(*failed.since, now))
     return;
@@ -98,7 +98,8 @@ void Membership::OnOtherRun(const run_t& run, TimePoint now) {
   const status_t& own = own_.message();
   const bool may_go = run_.id && !chosen_ && runner_.Silent(now) && run.phase != run_t::STOP;
   if (!may_go || SeatIn(run, own.role, own.instance) != Seat::kFree) return;
-  // A signed RUN may be a repetition from an old run, so it must answer a request of this process.
+  // A signed RUN may be a copy from an old run. So the role leaves its run only because of a RUN
+  // that answers a request of this process.
   if (parts_.bus.secured() && run.answer_to != own.instance) return AskWhetherThere(run, now);
   own_.Release(
       fmt::format("the runner of run {} has been silent for {:.1f} s; run {} waits for the {}",
@@ -150,7 +151,7 @@ bool Membership::TakeNews(const run_t& run, TimePoint now) {
   } else if (!own_.Waits() && run.phase == run_t::PREPARE && run.header.step == 0 &&
              now >= announced_at_ + kAnnouncedRetry) {
     announced_at_ = now;
-    own_.Publish();  // repeated announcement: perhaps the runner has no STATUS of this role
+    own_.Publish();  // the runner repeats PREPARE: perhaps it has no STATUS of this role
   }
   return true;
 }

@@ -20,11 +20,12 @@ namespace fogline::runtime {
 class Membership {
  public:
   /// @param run_id the run to join; nullopt: the first run that waits for the role
-  /// @param rule gets the rule of the run when the role joins
+  /// @param rule is set when the role joins a run; the rule decides when the role computes a step
   Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
              std::unique_ptr<FireRule>& rule);
 
-  /// Sets what is called when the role has prepared for its run, just before it reports READY.
+  /// Sets the function that is called after the role has prepared for its run and before the role
+  /// reports READY.
   void BeforeReady(std::function<void()> call) { before_ready_ = std::move(call); }
   /// Does what is due: asks for the scenario, or leaves the run if the runner is gone.
   /// @return the latest time for the next call
@@ -36,23 +37,24 @@ class Membership {
   void OnRun(Bytes bytes);
   /// Handles a RUN of another run.
   void OnOtherRun(const run_t& run, TimePoint now);
-  /// Whether the runner is known to have sent this RUN just now. Otherwise the RUN may be a
-  /// repetition from an old run. In this case the function asks the runner and returns false.
+  /// Whether the runner is known to have sent this RUN just now. Otherwise the RUN may be a copy
+  /// from an old run. In this case the function calls AskWhetherThere() and returns false.
   bool IsFresh(const run_t& run, TimePoint now);
-  /// Asks a runner for a RUN that answers this process.
+  /// Asks the runner of `run` for a new RUN. The field answer_to of the new RUN names this process,
+  /// which shows that the runner is there and that the RUN is no copy.
   void AskWhetherThere(const run_t& run, TimePoint now);
   /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
   void CheckSends(TimePoint now);
   /// Whether the runner has given the role's place to another process. If an option names the run,
-  /// the role first asks the runner, because the RUN may come from a played log. Such a RUN names a
-  /// process of the logged run.
+  /// the RUN may come from a played log, and then it names a process of the logged run. So in this
+  /// case only a RUN that answers this process counts. The function asks the runner for such a RUN.
   bool HasLostItsPlace(const run_t& run, TimePoint now);
-  /// Whether a log was played in place of a run, and is over.
+  /// Whether the role follows a played log in place of a run, and the log has ended.
   bool LogIsOver(TimePoint now);
-  /// Evaluates what a RUN says about the run, if this RUN is newer than all earlier RUN messages.
+  /// Evaluates a RUN if it is newer than all earlier RUN messages.
   /// @return whether the RUN is newer
   bool TakeNews(const run_t& run, TimePoint now);
-  /// Forgets a run whose runner fell silent before the whole scenario had come.
+  /// Forgets a run whose runner stopped sending before the whole scenario had come.
   void Unbind();
   void Join(const run_t& run);
 

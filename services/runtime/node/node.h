@@ -28,7 +28,7 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   /// Does what is due, such as the requests for missing inputs, the next step, or the STATUS. Call
-  /// it after every Bus::Wait().
+  /// this function after every Bus::Wait().
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now);
 

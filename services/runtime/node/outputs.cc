@@ -8,8 +8,9 @@
 namespace fogline::runtime {
 namespace {
 
-// All roles receive each answer. If another role asks for the same step within this time, that role
-// gets no second answer. The role has received the first answer, or will ask again.
+// All roles receive each answer. If another request for the same step comes within this time after
+// an answer, it gets no answer. The role that asks has received the first answer, or will ask
+// again.
 constexpr Duration kAnswerHolds = milliseconds(1);
 // Answers with the newest kNewest steps do not count for the rate limit, because the run waits for
 // these steps.
@@ -50,8 +51,9 @@ void Outputs::Publish(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // A step that is so old that it is on disk is not published, because the recorder answers
-    // requests for it. In real time every output is published.
+    // In lockstep, the output of a step that is at least 2 * kMaxAhead steps behind the run is not
+    // published. The recorder has this step on disk, and answers requests for it. In real time
+    // every output is published.
     if (parts_.run.realtime || step > parts_.run.progress - 2 * kMaxAhead) {
       parts_.bus.Publish(output.topic, bytes);
     }

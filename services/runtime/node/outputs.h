@@ -1,6 +1,6 @@
 // The outputs of a role. This class publishes each step once, stores the last steps, and answers
-// requests for them. In lockstep, it does not publish a step that is so old that the recorder
-// answers requests for it.
+// requests for them. In lockstep, a role that catches up does not publish steps that are far behind
+// the run, because the recorder has these steps on disk and answers requests for them.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ class Outputs {
  public:
   Outputs(const Outputs&) = delete;  // the bus refers to this object
   Outputs& operator=(const Outputs&) = delete;
-  /// @param rule the role's rule, null until the role has joined
+  /// @param rule decides when the role computes a step; null until the role has joined a run
   Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
 
   /// Publishes the output of a step on one of the role's channels (an index in kChannels), and
-  /// stores the output. In lockstep, the output of a step that the recorder already has is only
-  /// stored.
+  /// stores the output. In lockstep, the output of a step that is at least 2 * kMaxAhead steps
+  /// behind the run is only stored, because the recorder has this step on disk.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
-  /// The limit for answers to requests. It counts answers with STATUS, and answers with steps that
-  /// are older than the two newest steps.
+  /// The rate limit for answers to requests. Answers with STATUS count, and answers with steps that
+  /// are older than the two newest steps. Answers with the two newest steps do not count.
   RateLimiter& limiter() { return limiter_; }
 
  private:

@@ -14,8 +14,8 @@ namespace {
 
 // The longest error text. OwnStatus::EncodeMessage() makes it shorter if the other fields are long.
 constexpr std::size_t kMaxErrorBytes = 700;
-// After a failed send, the next STATUS is sent when this time has passed since the last STATUS. It
-// does not wait for the heartbeat, because the run may end before the heartbeat.
+// After a failed send, the next STATUS is sent when this time has passed since the last STATUS. The
+// next STATUS does not wait until kHeartbeat has passed, because the run may end earlier.
 constexpr Duration kTellSends = milliseconds(20);
 
 }  // namespace

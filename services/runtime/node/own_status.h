@@ -20,7 +20,7 @@ class OwnStatus {
   /// The longest time between two STATUS messages of a role.
   static constexpr Duration kHeartbeat = milliseconds(200);
 
-  /// @param rule the role's rule, null until the role has joined
+  /// @param rule decides when the role computes a step; null until the role has joined a run
   OwnStatus(Bus& bus, Role role, const RunNews& run, Work& work,
             const std::unique_ptr<FireRule>& rule);
 
@@ -60,7 +60,8 @@ class OwnStatus {
   bool HastensForFailedSends();
 
  private:
-  /// Encodes the message into buffer_. Cuts its error if it would be longer than a message may be.
+  /// Encodes the message into buffer_. Shortens the error text if the message would be longer than
+  /// kMaxMessageBytes.
   void EncodeMessage();
 
   void SetError(const std::string& error);

@@ -1,4 +1,5 @@
-// The common parts of a node. The node's rule, its work and its other members use these parts.
+// The common parts of a node. The node's rule (FireRule), its work (Work) and its other members use
+// these parts.
 #pragma once
 
 #include <memory>

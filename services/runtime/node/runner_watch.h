@@ -33,18 +33,19 @@ class RunnerWatch {
   /// if its machine is overloaded, or if a person stops it (Ctrl-Z). In these cases the role may
   /// join another run before the runner continues.
   static constexpr Duration kSilent = milliseconds(2000);
-  /// If no other run waits for the role, the role leaves its run after the sum of the stall limit
-  /// and this time. After the stall limit the run has ended, except if the runner itself is paused
-  /// (Ctrl-Z). The additional time is meant for a pause of the runner.
+  /// If no other run waits for the role, the role leaves its run when the runner has been silent
+  /// for the stall limit plus this time. After the stall limit the run has ended, except if the
+  /// runner itself is paused (Ctrl-Z). The additional time is meant for a pause of the runner.
   static constexpr Duration kGone = milliseconds(15'000);
   /// The stall limit if RUN contains no stall limit: the default of `fogline run`.
   static constexpr Duration kStallLimit = milliseconds(4000);
 
   explicit RunnerWatch(TimePoint now) : pauses_(now) {}
 
-  /// Notes that the process reads the clock. Call it before Silence(), Silent(), Gone() and
+  /// Notes that this process runs at the time `now`, so that its own pauses do not count as silence
+  /// of the runner (OwnPauses). Call this function before Silence(), Silent(), Gone() and
   /// Stalled().
-  /// @return the time of its latest reading
+  /// @return the latest noted time
   TimePoint Attend(TimePoint now) { return pauses_.Attend(now); }
   /// Notes that the runner has sent a new RUN.
   void Heard(const run_t& run, TimePoint now) {
@@ -55,8 +56,8 @@ class RunnerWatch {
   /// Notes that the role has no runner.
   void Forget() { heard_ = {}; }
 
-  /// The time since the last RUN, without the time in which this process was held up; zero if the
-  /// role has no runner.
+  /// The time since the last RUN, without the pauses of this process; zero if the role has no
+  /// runner.
   Duration Silence(TimePoint now) const {
     return heard_ == TimePoint{} ? Duration::zero() : pauses_.HeldAgainst(heard_, now);
   }
@@ -66,7 +67,7 @@ class RunnerWatch {
   bool GoneSince(TimePoint heard, TimePoint now) const {
     return pauses_.HeldAgainst(heard, now) > stall_limit_ + kGone;
   }
-  /// Whether something that began at `since` has lasted for longer than the stall limit.
+  /// Whether a state that began at `since` has lasted for longer than the stall limit.
   bool Stalled(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now) > stall_limit_;
   }

@@ -14,7 +14,8 @@ class Steps {
  public:
   Steps(OwnStatus& own, Work& work) : own_(own), work_(work) {}
 
-  /// The step to compute next. It uses each input's message of step next() - lag.
+  /// The step to compute next. In lockstep, this step uses the message of step next() from an input
+  /// with lag 0, and of step next() - 1 from an input with lag 1 (LagOf() in services/graph.h).
   std::int64_t next() const { return next_; }
   /// Notes that an earlier process of this role has computed the steps before `step`.
   void StartAt(std::int64_t step) {

@@ -29,18 +29,18 @@ class Work {
   /// @return the rule that decides when steps are computed
   /// @throws std::exception that says what is wrong
   virtual std::unique_ptr<FireRule> Join(const Scenario& scenario) = 0;
-  /// Computes a step, and publishes all its outputs (Outputs). The inputs that the rule demands
-  /// have come.
+  /// Computes a step, and publishes all its outputs (Outputs). Called when the FireRule of Join()
+  /// has decided that the role computes this step now.
   /// @throws std::exception that says what is wrong
   virtual void Compute(std::int64_t step) = 0;
-  /// Does work that is due but does not belong to a step. Called before the rule's Poll(), while
-  /// the role is READY or RUNNING. @return the latest time for the next call
+  /// Does work that is due but does not belong to a step. Called before FireRule::Poll(), while the
+  /// role is READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
   /// Called before every STATUS. The role finishes the work that the STATUS reports as done. For
   /// example, the recorder flushes its log.
   virtual void BeforeStatus() {}
-  /// Called exactly once, when the role's part in its run ends (OwnStatus::left()).
-  /// OwnStatus::Release() does not call this function.
+  /// Called exactly once, when the role's part in its run ends (OwnStatus::left()). Not called when
+  /// the role gives up its place in the run (OwnStatus::Release()).
   virtual void OnLeave() {}
   /// Called when another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}

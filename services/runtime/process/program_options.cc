@@ -53,8 +53,8 @@ std::string OptionMeant(const CLI::App& command, const std::string& mistyped) {
 }
 
 std::string WhatIsWrong(const CLI::ParseError& error) {
-  // Parts of CLI11's error texts. Such a text begins with the name of the option; only kNoNumber
-  // comes before the name. The name of a flag lacks its dashes.
+  // Parts of CLI11's error texts. An error text begins with the name of the option, or with
+  // kNoNumber and then the name. In a text with kNoFlag, the name has no dashes.
   static const std::string kNoNumber = "Could not convert: ";
   static const std::string kNoFlag = " was given a disallowed flag override";
   static const std::string kNoValue = " required ";

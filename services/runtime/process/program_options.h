@@ -40,8 +40,9 @@ std::string OptionMeant(const CLI::App& command, const std::string& mistyped);
 std::string WhatIsWrong(const CLI::ParseError& error);
 
 /// The options of a program without verbs. In this library, only the source file of this class
-/// includes CLI11, because CLI11's headers take seconds to compile. A variable that is given to a
-/// function gets its value in Parse(); its value before Parse() is the default.
+/// includes CLI11, because CLI11's headers take seconds to compile. Each function that adds an
+/// option takes a variable. The value of the variable before Parse() is the default, and Parse()
+/// stores the value from the command line in the variable.
 class ProgramOptions {
  public:
   /// @param name the program's name, such as "fogline-radar"

@@ -22,8 +22,8 @@
 namespace fogline::runtime {
 namespace {
 
-// Priorities in real time. The world is the clock of the run and has the highest priority. Then
-// come the other roles, then all other processes of the machine.
+// Priorities in real time. The world is the clock of the run and has the highest priority. The
+// other roles have a lower priority, but run before all other processes of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
 // If a network cannot be joined, the process tries again at this interval.
@@ -51,7 +51,7 @@ struct Arguments {
 /// A process on its network: a bus, and the role's node on that bus.
 class Service {
  public:
-  /// @throws InputError, std::runtime_error if it cannot join the network, Interrupted
+  /// @throws InputError or std::runtime_error if the process cannot join the network; Interrupted
   Service(const Arguments& arguments, const WorkFactory& make)
       : arguments_(arguments), make_(make), began_(Clock::now()), pauses_(began_) {
     JoinAtFirst(NetworkUrl(arguments.url));
@@ -128,8 +128,8 @@ class Service {
   }
 
   std::string HowToStartOne() const {
-    // There is no advice for the recorder and for a role with --run-id, because a runner starts
-    // them for its run.
+    // The text is empty for the recorder and for a role with --run-id, because a runner starts
+    // these roles for its run.
     if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
     const std::string url =
         arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);

@@ -116,7 +116,7 @@ class StepNode final : public Work {
     }
   }
 
-  /// Stores a pointer to the rule's RealtimeWatch, which judges the inputs.
+  /// Stores a pointer to the RealtimeWatch of `rule`, which judges the inputs. @return `rule`
   template <class Rule>
   std::unique_ptr<Rule> Watched(std::unique_ptr<Rule> rule) {
     watch_ = &rule->watch();
@@ -142,7 +142,9 @@ class StepNode final : public Work {
     return algorithm_->Step(std::get<I>(rings_)[RingSlot(step - kLag<I>)]...);
   }
 
-  /// Passes the input on demand to the algorithm before each step, if the scenario uses this input.
+  /// Before each step, passes the newest message of the input on demand (services/algorithm.h) to
+  /// the algorithm's SetOnDemandInput(). Does nothing if the algorithm has no such input, or does
+  /// not use it in this scenario.
   template <class A>
   void PassOnDemandInput(A& algorithm, std::int64_t step) {
     if constexpr (Traits::kHasOnDemand) {
@@ -198,11 +200,12 @@ class StepNode final : public Work {
     return {.state = watch_->StateFor(static_cast<std::size_t>(input), step), .newest = newest};
   }
 
-  /// The header of the first input, which is the world's tick.
+  /// The header of the first input. This input is the world's message that begins the step.
   header_t HeaderOf(std::int64_t step) { return std::get<0>(rings_)[RingSlot(step)].header; }
 
-  /// Takes over from a world that was killed. Computes again the steps after the last recorded
-  /// step, up to the known progress. Does not publish these steps, so no step is published twice.
+  /// Takes over from a world that was killed. Computes the steps after the last recorded step
+  /// again, up to the step that the run has reached according to RUN. Does not publish these steps,
+  /// so no step is published twice.
   void Resume(const truth_t& truth) {
     if constexpr (kFailsafe && Traits::kStarts) {
       failsafe_->Resume(truth, parts_.run.minimal_risk);

@@ -30,7 +30,7 @@ struct Culprit {
 /// Blames the producer of the first lost input. The inputs are in the order of the graph table,
 /// which is the order in which the channels are computed in a step. If this producer has reported
 /// lost inputs itself, the blame passes to the producer of the first of these inputs, and so on. If
-/// the blame would pass to a channel that was blamed before, it stays at the current producer.
+/// the blame would pass to a channel that was blamed before, the current producer keeps the blame.
 /// @return nullopt if `lost` is empty
 std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& reported);
 

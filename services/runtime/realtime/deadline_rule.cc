@@ -23,7 +23,8 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   const auto inputs = parts_.inputs.all();
   const Input& tick = inputs[watch_.tick_input()];
   const std::int64_t step = tick.ring.newest();
-  // A process that was held up still decides its old steps, so that the log has these decisions.
+  // After a pause, this process still decides the steps of the pause, so that the log has these
+  // decisions.
   for (std::int64_t over = watch_.Oldest(step); over < step && parts_.own.Running(); ++over) {
     if (tick.ring.Has(over)) Decide(over, now);
   }

@@ -1,8 +1,9 @@
-// The real-time rule for the role that must decide in every step (the arbitrator). The role decides
-// as soon as it has all inputs that are not lost. It also waits for a lost input if messages of
-// this input come again. At its deadline, a fixed time after the world's tick, the role decides
-// with the inputs that it has. The deadline is so early that the command still reaches the world in
-// time. If the next step has already begun, the role decides immediately.
+// The rule (fire_rule.h) that decides in real time when the arbitrator computes a step. The
+// arbitrator is the role that must decide in every step. It decides as soon as it has all inputs
+// that are not lost. It also waits for a lost input if messages of this input come again. At its
+// deadline, a fixed time after the world's tick, it decides with the inputs that it has. The
+// deadline is so early that the command still reaches the world in time. If the next step has
+// already begun, the arbitrator decides immediately.
 #pragma once
 
 #include "services/runtime/node/fire_rule.h"

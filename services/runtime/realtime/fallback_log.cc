@@ -14,8 +14,8 @@ std::size_t PlaceOf(std::string_view role) {
                                   kRoles.begin());
 }
 
-// A role without a STATUS for this time of the wall clock is silent. A living process publishes a
-// STATUS five times a second.
+// A role counts as silent if it has sent no STATUS for this time on the wall clock. A living
+// process publishes a STATUS five times a second.
 constexpr double kSilent_us = 600e3;
 
 void Append(std::string& list, std::string_view separator, std::string_view text) {
@@ -98,9 +98,9 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
 
 // Returns the name of the role that stopped publishing; "" if no input is lost or stale. `status`
 // names the first lost input of its role, or the first stale input if no input is lost. The search
-// begins with this input. The last STATUS of each other role says which lost inputs keep that role
-// from publishing. No lost input keeps the world from publishing. Only lost channels of the world
-// keep the arbitrator from publishing.
+// begins with this input. The last STATUS of each other role says which lost inputs prevent that
+// role from publishing. The world always publishes, even if inputs are lost. The arbitrator stops
+// publishing only if an input from the world is lost.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

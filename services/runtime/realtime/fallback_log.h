@@ -17,7 +17,7 @@ namespace fogline::runtime {
 /// A change in the run: a role reacts to its inputs in another way, an input is lost, or a lost
 /// input comes again. (A stale input is reported only if the role reacts to it.)
 struct Fallback {
-  std::int64_t step = 0;  // step that was under way at the change
+  std::int64_t step = 0;  // the step that the run had reached at the change
   std::string role;
   std::string what;     // such as "TRACK, ACC_COMMAND lost: the human drives"
   std::string culprit;  // role that stopped publishing, "" if there is none

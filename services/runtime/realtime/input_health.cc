@@ -83,8 +83,8 @@ double InputHealth::RateHz(TimePoint now) const {
   const std::size_t first = num_arrivals_ < kRateSteps ? 0 : next_arrival_;
   const TimePoint oldest = arrivals_[first];
   const auto intervals = static_cast<double>(num_arrivals_ - 1);
-  // The open interval since the last arrival counts as soon as it is longer than the average of the
-  // closed intervals.
+  // An interval between two arrivals is closed. The interval since the last arrival is still open.
+  // It counts as soon as it is longer than the average of the closed intervals.
   const double closed_s = Seconds(heard_ - oldest) / intervals;
   const double open_s = Seconds(now - oldest) / (intervals + 1);
   const double interval_s = std::max(closed_s, open_s);

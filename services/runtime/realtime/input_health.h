@@ -26,9 +26,9 @@ namespace fogline::runtime {
 /// the time that they take at the normal rate. So an input does not recover while its sender sends
 /// a backlog after a stop. The input recovers when the sender sends at its normal rate again.
 ///
-/// The loss of an input is detected `lost` periods after its last step. So the time from the end of
-/// the sender to the detection is `lost` periods at most, plus the time until the receiver calls
-/// Update() (see NextChange()).
+/// The loss of an input is detected `lost` periods after its last step. So the time from the
+/// failure of the sender to the detection is `lost` periods at most, plus the time until the
+/// receiver calls Update() (see NextChange()).
 class InputHealth {
  public:
   /// @param period duration of a step on the wall clock, above 0
@@ -42,7 +42,8 @@ class InputHealth {
   /// Updates the state to the time `now`. @return the state
   InputState Update(TimePoint now);
   InputState state() const { return state_; }
-  /// When Update() will change the state if no step arrives; TimePoint::max() if it will not.
+  /// When Update() will change the state if no step arrives; TimePoint::max() if Update() will not
+  /// change the state.
   TimePoint NextChange() const;
 
   /// Newest step that has arrived, -1 if none.

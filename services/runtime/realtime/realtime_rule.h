@@ -1,12 +1,13 @@
-// The rule in real time. The world ticks on the wall clock and does not wait for any role. A role
-// that lacks an input does not ask for it, because the input would come too late. As soon as a
-// newer step is complete, the role leaves the incomplete step out and counts it. If the role's own
-// process was paused, the role then computes every complete step, in order. The log needs all these
-// steps, and so does a role that filters its inputs over time. A role does not wait for an input on
-// demand.
+// Decides when a role computes a step in real time. The world ticks on the wall clock and does not
+// wait for any role. A step is complete if the role has all inputs of this step. A role that lacks
+// an input does not ask for it, because the input would come too late. As soon as a newer step is
+// complete, the role leaves the incomplete step out and counts it as missed. After a pause of its
+// own process, the role computes every complete step, in order. The log needs all these steps. A
+// role that filters its inputs over time needs them, too. A role does not wait for an input that it
+// reads only in some scenarios (an input on demand).
 //
-// This is the rule of most roles. The world (tick_rule.h), the arbitrator (deadline_rule.h) and the
-// recorder have other rules.
+// Most roles use this class. The world (tick_rule.h), the arbitrator (deadline_rule.h) and the
+// recorder (record_rule.h) have other classes for this decision.
 #pragma once
 
 #include "services/runtime/node/fire_rule.h"
@@ -24,7 +25,8 @@ class RealtimeRule final : public FireRule {
   void WriteStatus(TimePoint now) override { watch_.WriteStatus(now); }
 
  private:
-  /// Computes every complete step. @return the latest time for the next call
+  /// Computes every step for which the role has all inputs. @return the latest time for the next
+  /// call
   TimePoint Fire(TimePoint now);
 
   Parts& parts_;

@@ -21,7 +21,7 @@ namespace fogline::runtime {
 /// on the world's clock, so the clocks of two machines are never compared.
 class RealtimeStatistics {
  public:
-  /// A tick that is later than this counts as late.
+  /// A tick counts as late if it comes more than this time after its due time.
   static constexpr Duration kLate = milliseconds(5);
 
   /// Counts a tick that was due at `due` and happened at `now`.

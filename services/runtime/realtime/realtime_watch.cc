@@ -7,14 +7,16 @@
 namespace fogline::runtime {
 namespace {
 
-// The share of a period by which a call of Poll() may be late. RunClock has the same limit for the
-// world's ticks.
+// The share of a period by which a call of Poll() may be late. A later call means that this process
+// was paused. RunClock has the same limit for the world's ticks.
 constexpr double kLateCall = 0.25;
 // Speaks() is true if the newest message of the input is at most this many periods old. By default
-// this limit is shorter than the time without a new step after which an input is LOST.
+// this limit is below lost_periods, the number of periods without a new step after which an input
+// is LOST.
 constexpr int kSpeaks = 2;
 
-/// Index of the input that brings the world's ticks; the number of inputs if no input brings them.
+/// Index of the first input from the world. Its messages are the world's ticks, which begin the
+/// steps of the role. The result is the number of inputs if the role reads no input from the world.
 std::size_t TickInputOf(std::span<const Input> inputs) {
   const auto tick = std::ranges::find(
       inputs, Role::kWorld, [](const Input& input) { return kChannels[input.channel].from; });
@@ -48,8 +50,8 @@ StepRing::Verdict RealtimeWatch::Judge(std::size_t input, std::int64_t step, Byt
   if (ring.Has(step) && std::ranges::equal(ring.Get(step), bytes)) {
     return StepRing::Verdict::kDuplicate;
   }
-  // A message of an input on demand is late only if the input has a message of the same step or of
-  // a later step.
+  // An input on demand is a channel that the role reads only in some scenarios. A message of such
+  // an input is late only if a message of the same step or of a later step has come before.
   const bool late = from.on_demand ? step <= ring.newest()
                                    : step < parts_.steps.next() - from.lag ||
                                          step <= ring.newest() - kRingSteps || ring.Has(step);

@@ -1,12 +1,14 @@
-// The common part of the rules in real time. It decides which messages are in time, judges inputs
-// by age (input_health.h), computes a step that is due, and keeps the statistics of the role.
+// The common part of the classes that implement FireRule (fire_rule.h) in real time. This part
+// decides which messages are in time, judges inputs by age (input_health.h), computes a step that
+// is due, and keeps the statistics of the role.
 //
 // A message that comes after the end of its step is late: it is counted and never used. A message
-// of a step that cannot be under way is refused (step_horizon.h). An input on demand is not judged
-// and has no state.
+// of a step that the run cannot have reached is refused (step_horizon.h). An input that the role
+// reads only in some scenarios (an input on demand, services/algorithm.h) is not judged and has no
+// state.
 //
-// STATUS reports the state of each input, the culprit, and how punctual the role is. When a state
-// changes, a STATUS is sent immediately.
+// STATUS reports the state of each input, the input that is to blame if inputs are missing
+// (culprit.h), and how punctual the role is. When a state changes, a STATUS is sent immediately.
 #pragma once
 
 #include <algorithm>
@@ -36,17 +38,17 @@ class RealtimeWatch {
 
   /// Decides what to do with an input's message of a step, and counts the message if it is late.
   StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
-  /// Notes that an input has a new message of a step, which Inputs::Keep() has stored.
+  /// Notes that Inputs::Keep() has stored a new message of an input.
   void Heard(std::size_t input, std::int64_t step, TimePoint time);
-  /// Calls Judge(), Inputs::Keep() and Heard(), for a rule that does nothing else between these
-  /// calls.
+  /// Handles a message of an input: calls Judge(), Inputs::Keep() and, if the message was stored,
+  /// Heard(). A FireRule that does more between these calls does not use Take().
   void Take(std::size_t input, std::int64_t step, Arrival& arrival) {
     const auto verdict = Judge(input, step, arrival.bytes());
     if (parts_.inputs.Keep(input, step, arrival, verdict)) Heard(input, step, arrival.time());
   }
-  /// Reads the waiting messages and judges the inputs. Then, if the role still runs, calls `fire`,
-  /// which computes the steps that are due and returns the latest time for the next call.
-  /// @return the latest time for the next call
+  /// Reads the waiting messages and judges the inputs. Then, if the role still runs, calls `fire`.
+  /// @param fire computes the steps that are due, and returns the latest time for its next call
+  /// @return the latest time for the next call of Poll()
   TimePoint Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire);
   /// Notes the progress that a RUN has reported.
   void OnProgress() { horizon_.Told(parts_.run.progress, Clock::now()); }
@@ -54,19 +56,21 @@ class RealtimeWatch {
   void WriteStatus(TimePoint now);
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
-  /// The state of an input for an algorithm that computes a step without some of its inputs. The
-  /// world's tick counts as OK if the tick of this step has come, even if no tick came for a long
-  /// time before.
+  /// The state of an input, for an algorithm that can compute a step although some inputs are
+  /// missing. The input that brings the world's ticks counts as OK if the tick of this step has
+  /// come, even if no tick came for a long time before.
   InputState StateFor(std::size_t input, std::int64_t step) const;
   /// Whether a message of the input has come recently, either in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const;
 
-  /// The inputs that a step needs: all inputs except the inputs on demand.
+  /// The inputs without which a step is incomplete. These are all inputs that the role reads in
+  /// every scenario (Input::on_demand is false).
   std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
-  /// The index of the input that brings the world's ticks; the number of inputs if no input brings
-  /// them.
+  /// The index of the input that brings the world's ticks, which begin the steps. If the role has
+  /// no such input, the result is the number of inputs.
   std::size_t tick_input() const { return tick_input_; }
-  /// The first step up to `newest` that may still be computed.
+  /// The oldest step that may still be computed when `newest` is the newest step. Older steps are
+  /// before the role's next step, or the rings of the inputs do not store them any more.
   std::int64_t Oldest(std::int64_t newest) const {
     return std::max(parts_.steps.next(), newest - kRingSteps + 1);
   }
@@ -77,7 +81,7 @@ class RealtimeWatch {
   /// Notes that the world has begun this step now.
   void Begun(std::int64_t step, TimePoint now);
   RunHorizon& horizon() { return horizon_; }
-  /// Newest step that can be under way.
+  /// The newest step that the run can have reached.
   std::int64_t NewestPossible(TimePoint now) const {
     return horizon_.NewestPossible(now, clock_.Silence(now));
   }
@@ -89,16 +93,16 @@ class RealtimeWatch {
     std::int64_t count = 0;
     TimePoint at{};  // when the last message came
   };
-  /// The pauses of this process. The process was held up if Poll() was called much later than
+  /// The pauses of this process. The process was paused if Poll() was called much later than
   /// `wake`.
   struct OwnPause {
-    TimePoint wake = TimePoint::max();  // the latest time for the next call, from the last Poll()
+    TimePoint wake = TimePoint::max();  // the result of the last Poll()
     Duration sum{};
   };
 
   void NoticeOwnPause(TimePoint now);
-  /// Updates the states to the time `now`. @return when a state may next change although no message
-  /// comes
+  /// Updates the states to the time `now`. @return the next time at which a state may change
+  /// without a new message
   TimePoint UpdateHealth(TimePoint now);
   /// The time `now` on the clock by which an input is judged. The world's ticks are judged by the
   /// wall clock without the pauses of this process, because the process receives no ticks during a

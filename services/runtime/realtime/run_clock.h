@@ -16,8 +16,9 @@ namespace fogline::runtime {
 /// by more than kGrace periods, and continues when a message of the next step comes. If steps were
 /// skipped in between, the clock advances by the periods of these steps, too. A message may also
 /// come late without a pause of the world (a TRUTH that was lost and sent again). Then the clock
-/// also stops. The next message that comes in time corrects it. The clock never goes backwards, and
-/// is never ahead of the wall clock. Before the first step, the clock stands at `began`.
+/// also stops. The next message that comes in time corrects the clock. The clock never goes
+/// backwards, and is never ahead of the wall clock. Before the first step, the clock stands at
+/// `began`.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)
@@ -52,7 +53,7 @@ class RunClock {
   /// The share of a period by which a tick may be late. It is well above the usual variation of
   /// ticks, and well below the delay that makes an input stale.
   static constexpr double kGrace = 0.25;
-  /// Longer than any run. The sum of two such times does not overflow.
+  /// A time that is longer than any run. The sum of two such times does not overflow.
   static constexpr double kLongest_ns = 1e18;
 
   Duration Periods(double periods) const {

@@ -41,7 +41,7 @@ class StepHorizon {
   }
 
   bool known() const { return known_; }
-  /// The newest step that can be under way. @pre known()
+  /// The newest step that the world can have begun. @pre known()
   std::int64_t Newest(TimePoint now) const {
     return loosest_.step + (now - loosest_.time) / period_ + slack_;
   }
@@ -70,12 +70,13 @@ class StepHorizon {
 
 /// Estimates the newest step of a run from its messages and from the runner's reports.
 ///
-/// The progress that the runner reports always limits the steps. The messages of steps give a
-/// second limit, which counts only while messages of new steps come. So a role that is wrong about
-/// the progress corrects itself soon. An example is a role that was started in the middle of the
-/// run and first received an old message. One false message can mislead a role by two steps
-/// (kSlack). Many false messages can mislead a role by one second at most, because the runner's
-/// report allows no more.
+/// There are two limits. The progress that the runner reports gives the first limit, which always
+/// counts. The messages of steps give the second limit, which counts only while messages of new
+/// steps come. The second limit may be too low, for example if a role that was started in the
+/// middle of the run first receives an old message. The role then refuses the messages of new
+/// steps, but only until the second limit no longer counts. One false message can make the estimate
+/// too high by two steps (kSlack). Many false messages can make it too high by one second at most,
+/// because of the first limit.
 class RunHorizon {
  public:
   /// @param period duration of a step on the wall clock, above 0
@@ -91,12 +92,12 @@ class RunHorizon {
   }
   /// Notes that the runner has reported this progress.
   void Told(std::int64_t progress, TimePoint now) { told_.Heard(progress, now); }
-  /// Notes that this step is under way, as the runner or a message of the step shows.
+  /// Notes that the world has begun this step, as the runner or a message of the step shows.
   void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
 
-  /// Newest step that is known to be under way, -1 if none.
+  /// The newest step that is known to have begun, -1 if none.
   std::int64_t newest() const { return newest_; }
-  /// Newest step that can be under way. @pre the runner has reported its progress
+  /// The newest step that the world can have begun. @pre the runner has reported its progress
   /// @param silence the time since the first message of the newest step
   std::int64_t NewestPossible(TimePoint now, Duration silence) const {
     const std::int64_t told = told_.Newest(now);
@@ -105,18 +106,18 @@ class RunHorizon {
   }
 
  private:
-  /// The world may be ahead of the estimate by two steps. One step is needed because the estimate
-  /// may be based on a tick that was late by less than a period. The second step is needed because
-  /// a message takes some time to arrive.
+  /// The world may be ahead of the estimate by two steps. The first of these steps is needed
+  /// because the estimate may be based on a step that the world began late, by less than a period.
+  /// The second step is needed because a message takes some time to arrive.
   static constexpr std::int64_t kSlack = 2;
   /// The progress that the runner reports is at most this old. In this time a role sends five
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
-  /// A message limits the newest possible step for at least kHeardPeriods periods, and a report of
-  /// the runner for at least kToldFor. A message may come late because it was sent again. A message
-  /// that has left its producer's ring of kRingSteps steps is not sent again, so no message comes
-  /// more than kRingSteps periods late. The runner reports old progress while it receives no
-  /// STATUS. In a run that goes on, such a time is shorter than a minute.
+  /// The times for which a proof counts at least (`remembered` of StepHorizon): kHeardPeriods
+  /// periods for a message, and kToldFor for a report of the runner. A message may come late
+  /// because it was sent again. But it comes at most kRingSteps periods late, because its producer
+  /// keeps only kRingSteps steps. A report may have old progress, because the runner receives no
+  /// STATUS for some time. In a run that goes on, this time is shorter than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.

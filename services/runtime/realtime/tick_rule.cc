@@ -6,21 +6,22 @@
 namespace fogline::runtime {
 namespace {
 
-// How long the recorder may take to write the last steps. The recorder may wait for repairs, or be
-// started again itself.
+// How long the recorder may take to write the last steps. In this time, the recorder may wait for
+// repairs, or its process may be started again.
 constexpr Duration kEndLimit = milliseconds(3000);
 // A world that is started again asks the recorder at this interval. The world takes the newest
 // answer that comes within kAnswersLast after the first answer.
 constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
-// The first step that a restarted world asks for is this many steps before the known progress.
+// RUN tells a restarted world which step the run has reached. The first step that this world asks
+// for is this many steps earlier.
 constexpr std::int64_t kProgressAge = 8;
-// A tick counts as held up if it is late by more than this share of a period. The usual jitter is
+// A tick counts as delayed if it is late by more than this share of a period. The usual jitter is
 // smaller.
 constexpr double kHeldUp = 0.05;
-// A tick that was held up waits until the other roles have finished the previous step, but at most
-// this long. The roles usually need a fraction of this time. The next tick comes at least kApart
-// periods after the tick that was held up.
+// A delayed tick waits until the other roles have finished the previous step, but at most this
+// long. The roles usually need a fraction of this time. The next tick comes at least kApart periods
+// after the delayed tick.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 
@@ -155,7 +156,7 @@ std::int64_t TickRule::FirstAsked() const {
   return std::max<std::int64_t>(0, parts_.run.progress - kProgressAge);
 }
 
-// The TRUTH must be of this run, and near the known progress.
+// The TRUTH must be of this run, and near the step that the run has reached.
 bool TickRule::CanResume(const truth_t& truth) const {
   return truth.header.run_id == *parts_.run.id && truth.header.step >= 0 &&
          truth.header.step < std::min(parts_.run.steps, FirstAsked() + kRingSteps);

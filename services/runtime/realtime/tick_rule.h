@@ -1,12 +1,13 @@
-// The real-time rule for the role that begins the steps (the world): one step at each tick of the
-// wall clock, even if roles have not answered.
+// The rule (fire_rule.h) that decides in real time when the world computes a step. The world is the
+// role that begins the steps. It computes one step at each tick of the wall clock, even if roles
+// have not answered.
 //
 // Step k is due k periods after the start, on a grid that does not drift. While the process or its
-// machine is held up, ticks pass without a step. Only the last of these ticks begins a step. If the
-// whole machine was held up, the other roles may not have finished the previous step. The late tick
-// then waits up to 3 ms for these roles, and the next tick comes at least a quarter of a period
-// after the late one. Simulated time is counted in steps. So simulated time stops while the world's
-// process is stopped, and no step is ever left out. Missed ticks are counted.
+// machine is paused, ticks pass without a step. Only the last of these ticks begins a step. If the
+// whole machine was paused, the other roles may not have finished the previous step. In this case
+// the late tick waits up to 3 ms for these roles, and the next tick comes at least a quarter of a
+// period after the late tick. Simulated time is counted in steps. So simulated time stops while the
+// world's process is stopped, and no step is ever left out. Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
@@ -24,7 +25,7 @@ namespace fogline::runtime {
 class TickRule final : public FireRule {
  public:
   /// A function that lets a restarted world continue after the step of `truth`. It computes the
-  /// steps that are known to be under way, but does not publish them.
+  /// later steps that are known to have begun, but does not publish them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 
   TickRule(Parts& parts, const Scenario& scenario, StepGate& gate, TakeOver take_over);

@@ -17,8 +17,8 @@ class LiveInput {
   LiveInput(const LiveInput&) = delete;  // the bus refers to this object
   LiveInput& operator=(const LiveInput&) = delete;
 
-  /// The newest message of the seat that has the driver; nullptr if no seat has the driver. The
-  /// pointer is valid until the bus is read again.
+  /// The newest message of the seat that drives (SeatGate); nullptr if no seat drives. The pointer
+  /// is valid until the bus is read again.
   const driver_input_t* Newest(TimePoint now) const { return gate_.Newest(now); }
 
  private:

@@ -1,4 +1,4 @@
-// Decides which DRIVER_INPUT messages count. Only one seat at a time has the driver.
+// Decides which DRIVER_INPUT messages are used. Only one seat drives at a time.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace fogline::runtime {
 
-/// The messages of the seat that has the driver are used. A seat has the driver while its newest
-/// message is less than `deadman` old and says that a person is present. In this time the messages
-/// of other seats are refused. When this seat is silent, or its person has left, the next message
-/// of a person at any seat counts.
+/// Only the messages of the seat that drives are used. A seat drives while its newest message is
+/// less than `deadman` old and says that a person is present. In this time the messages of other
+/// seats are refused. When this seat is silent, or its person has left, the next seat whose message
+/// says that a person is present drives.
 ///
 /// The class reads no clock: its caller passes the time.
 class SeatGate {
@@ -24,8 +24,8 @@ class SeatGate {
   explicit SeatGate(Duration deadman) : deadman_(deadman) {}
 
   /// Takes a decoded message of this run.
-  /// @return why the message is refused; nullptr if it is not refused. A message that is not newer
-  ///     than all others of its seat is not refused, and has no effect.
+  /// @return why the message is refused; nullptr if it is not refused. If no other seat drives, a
+  ///     late or repeated message is not refused, but has no effect.
   RefusalCounter Take(const driver_input_t& input, TimePoint now) {
     if (const RefusalCounter wrong = WrongIn(input)) return wrong;
     const bool is_new = IsNew(input);
@@ -38,8 +38,8 @@ class SeatGate {
     return nullptr;
   }
 
-  /// The newest message of the seat that has the driver; nullptr if no seat has the driver. The
-  /// pointer is valid until the next Take().
+  /// The newest message of the seat that drives; nullptr if no seat drives. The pointer is valid
+  /// until the next Take().
   const driver_input_t* Newest(TimePoint now) const {
     const bool there = newest_ && newest_->present != 0 && now - heard_ < deadman_;
     return there ? &*newest_ : nullptr;
@@ -55,8 +55,8 @@ class SeatGate {
   /// starts only a few seats.
   static constexpr std::size_t kMostSeats = 64;
 
-  /// Whether the message is newer than all earlier ones of its seat. Otherwise it is late or a
-  /// repetition.
+  /// Whether the message is newer than all messages of its seat that came before. Otherwise the
+  /// message is late or a repetition.
   bool IsNew(const driver_input_t& input) {
     const auto heard = std::ranges::find(seats_, input.instance, &Heard::instance);
     if (heard == seats_.end()) {

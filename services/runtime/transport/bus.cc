@@ -43,8 +43,8 @@ class FlagSet {
   bool& flag_;
 };
 
-// A bus that receives nothing for this long renews its membership of the group. In this time every
-// process of a run sends five messages.
+// A bus that receives nothing for this long renews its membership of the multicast group, because
+// it may have lost the membership. In this time every process of a run sends five messages.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace
@@ -227,8 +227,8 @@ Bus::Topic* Bus::SubscribedTopic(std::string_view channel) {
 
 bool Bus::HasPacket(Duration timeout) {
   if (filtered_ || watcher_) return inbox_->Wait(timeout);
-  // Without a filter, messages without a reader come, too. After this many of them the function
-  // returns, so that the caller can do its other work.
+  // Without a filter, the bus also receives messages that no handler reads. After this many of
+  // these messages the function returns, so that the caller can do its other work.
   constexpr int kMostOthers = 100;
   const TimePoint end = Clock::now() + timeout;
   for (int i = 0; i < kMostOthers && inbox_->Wait(end - Clock::now()); ++i) {
@@ -312,9 +312,9 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
     ++(not_taken_.*kind);
   };
   if (!signer_) {
-    // The bytes go to the decoder as they are. The decoder refuses a message with a signature after
-    // its payload. By chance, an unsigned payload may end like a signature. Such a payload must
-    // still be read.
+    // Without a key, the bytes go to the decoder as they are. The decoder refuses a payload that is
+    // followed by a signature. But an unsigned payload may end like a signature by chance. The
+    // decoder must still read such a payload.
     count(&Unverified::no_key);
     return bytes;
   }

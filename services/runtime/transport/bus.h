@@ -37,8 +37,8 @@ class Client;
 
 namespace fogline::runtime {
 
-/// Thrown if a network cannot be reached, perhaps only for a time: this machine has no route for
-/// the multicast of the network's URL.
+/// Thrown if this machine has no route for the multicast address of the network's URL. The route
+/// may come back later.
 class NetworkAway : public InputError {
  public:
   using InputError::InputError;
@@ -77,10 +77,11 @@ class Bus {
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
   /// Starts a backlog: with udpm, a thread takes the messages out of the kernel's buffer
-  /// (udpm/backlog.h). So a busy process loses no messages until its backlog is full. But each
-  /// message then wakes two threads. The backlog is meant for runs in real time, whose roles do not
-  /// wait for a busy process. In lockstep, lost messages are sent again. With the other transports
-  /// the bus always has a backlog. A handler may call this function.
+  /// (udpm/backlog.h). So a busy process loses no messages until its backlog is full. But with a
+  /// backlog, each message wakes two threads. The backlog is meant for runs in real time, whose
+  /// roles do not wait for a busy process. A run in lockstep needs no backlog, because lost
+  /// messages are sent again. With the other transports the bus always has a backlog. A handler may
+  /// call this function.
   /// @throws std::runtime_error if the kernel grants no thread or no descriptor
   void KeepBacklog();
   /// From now on, the bus simulates a bad network for the messages that it receives (faults.h).
@@ -89,8 +90,8 @@ class Bus {
   /// Calls `handler` from Wait() for every message on exactly this channel. Handlers of one channel
   /// are called in the order of their subscription. The message is valid during the call. If a
   /// handler throws an exception, Wait() throws it.
-  /// @param contents the messages that `handler` needs; if the kernel can, it drops the other
-  ///     messages of the channel
+  /// @param contents the messages that `handler` needs; the kernel drops the other messages of the
+  ///     channel, if it accepts a filter and the channel has no other handler
   void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
 
   /// Receives only a share of a channel's messages, if the kernel accepts a filter. The share is in
@@ -102,8 +103,8 @@ class Bus {
   /// most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
-  /// Whether LCM receives the messages. If it does, LCM stores the name of every channel from which
-  /// a message comes, in about 300 bytes for each name.
+  /// Whether LCM receives the messages. In this case, LCM stores the name of every channel on which
+  /// a message comes. Each name takes about 300 bytes.
   bool LcmReceives() const { return lcm_ != nullptr && !inbox_; }
 
   /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
@@ -111,8 +112,8 @@ class Bus {
   /// @throws std::runtime_error if the message is larger than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
-  /// A channel on this bus. Callers that publish often use a Topic, because a search by name takes
-  /// time.
+  /// A channel on this bus. A caller that sends many messages keeps a reference to the Topic,
+  /// because a search by name takes time.
   struct Topic;
   Topic& TopicOf(std::string_view channel);
   void Publish(const Topic& topic, Bytes bytes);
@@ -136,7 +137,8 @@ class Bus {
   void Drain();
   static constexpr int kDrained = 1000;
 
-  /// Messages whose signature was not verified.
+  /// The numbers of messages that have no valid signature, or whose signature this process cannot
+  /// verify.
   struct Unverified {
     std::int64_t not_signed = 0;    // refused, because this process has a key
     std::int64_t badly_signed = 0;  // refused
@@ -149,8 +151,8 @@ class Bus {
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
   /// This descriptor is readable when Wait(0) would handle a message. With tcpq the bus may read
-  /// several messages from the descriptor at once. So with tcpq, all messages that have come must
-  /// be handled before the caller waits for this descriptor.
+  /// several messages from the descriptor at once. So with tcpq, before the caller waits for this
+  /// descriptor, it must handle all messages that have come.
   int fd() const { return fd_; }
   /// A count that grows whenever fd() begins to refer to another file. With tcpq this happens when
   /// the relay is lost or comes back, with udpm in KeepBacklog() and in SubscribeAll(). A caller
@@ -200,16 +202,16 @@ class Bus {
   int fd_ = -1;
   std::int64_t replaced_ = 0;
   bool filtered_ = true;  // false if the kernel has refused a filter for inbox_
-  // Set if messages of the group come over the route, which may change.
+  // Set if the bus uses the route to the group (LcmSockets::Reach::kRoute). This route may change.
   std::optional<GroupMembership> membership_;
   TimePoint joined_{};  // when a silent bus last renewed its membership
   FailedSends failed_sends_;
-  // With memq only this object publishes. Then waiting_ is the number of its messages that have not
+  // With memq only this object publishes, and waiting_ is the number of its messages that have not
   // been handled yet.
   bool in_memory_;
   std::int64_t waiting_ = 0;
   TimePoint now_{};            // when Wait() last handled a message
-  std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
+  std::deque<Topic> topics_;   // a deque does not move topics: LCM has pointers to them
   Watcher watcher_;            // called for messages on all channels; may be empty
   bool handling_ = false;      // whether handlers are being called
   std::exception_ptr parked_;  // an exception of a handler; it must not pass through LCM's C code

@@ -112,8 +112,9 @@ void Bus::OpenInbox() {
   filtered_ = inbox_->filtered();
 }
 
-/// Tests that a message of this bus comes back to this bus. Then accepts messages of no channel.
-/// @throws NetworkClosed
+/// Tests that a message of this bus comes back to this bus. After the test, the kernel's socket
+/// filter accepts no messages until a handler subscribes.
+/// @throws NetworkClosed if the message does not come back
 void Bus::TestInbox() {
   constexpr int kTries = 10;
   constexpr Duration kWait = milliseconds(100);

@@ -14,7 +14,8 @@
 namespace fogline::runtime {
 namespace {
 
-/// The delay of a message that is overtaken: about ten steps of a run over udpm.
+/// The delay of a message that later messages overtake. A run over udpm computes about ten steps in
+/// this time.
 constexpr Duration kOvertaken = milliseconds(2);
 /// The largest value of delay_ms. A longer delay leads to stalls, for which there are other tests.
 constexpr double kMaxDelayMs = 1000;

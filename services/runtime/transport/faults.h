@@ -23,18 +23,18 @@ namespace fogline::runtime {
 struct FaultRates {
   double loss = 0;
   double duplicate = 0;
-  double reorder = 0;   // the message is held back for 2 ms, so later messages overtake it
+  double reorder = 0;   // the message is delayed by 2 ms, so later messages overtake it
   double truncate = 0;  // the message is cut off at a random place
   double flip = 0;      // one bit of the message is wrong
   double delay_ms = 0;  // delay of every message
   std::int64_t seed = 1;
 
-  /// Whether messages may arrive with changed contents. Only a signature detects a change.
+  /// Whether messages may arrive with changed contents. Only a signature detects every change.
   bool Damage() const { return truncate > 0 || flip > 0; }
 };
 
 /// Reads a text such as "loss=0.3,delay_ms=5,seed=7", with any members of FaultRates by name.
-/// @throws InputError
+/// @throws InputError if the text is wrong
 FaultRates ParseFaults(std::string_view text);
 
 class Faults {

@@ -43,16 +43,18 @@ LcmSockets::~LcmSockets() { in_charge = nullptr; }
 
 int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) const {
   const int result = Connect(socket, address, size);
-  // LCM connects a socket only to find out whether there is a route. kLoopback needs no route.
+  // LCM connects a socket only to find out whether there is a route. kLoopback needs no route, so
+  // with kLoopback this call always succeeds.
   return reach_ == Reach::kLoopback ? 0 : result;
 }
 
 int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
-  // LCM joins the group even if it only sends. Sending needs no membership.
+  // LCM joins the group even if it only sends. Sending needs no membership, so this join is left
+  // out.
   if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) return 0;
   const int result = SetOption(socket, level, name, value, size);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
-  if (name != IP_MULTICAST_TTL) return result;  // LCM sets this option on the socket that sends
+  if (name != IP_MULTICAST_TTL) return result;  // LCM sets this option only on its sending socket
   const in_addr loopback = Loopback();
   return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
 }
@@ -84,8 +86,8 @@ void GroupMembership::Renew() {
   if (index == joined_.imr_ifindex && HasGroup(KernelTable("/proc/net/igmp"), interface, group_)) {
     return;
   }
-  // A socket remembers a group even after its interface has lost the group. So the socket leaves
-  // the group in any case.
+  // A socket remembers a group even after its interface has lost the group. So the socket must
+  // leave the group before it can join again.
   SetOption(socket_, IPPROTO_IP, IP_DROP_MEMBERSHIP, &joined_, sizeof(joined_));
   joined_.imr_ifindex = index;
   std::string trouble;

@@ -1,11 +1,11 @@
-// LCM sends with UDP sockets to which it gives no access. This code controls these sockets. A
-// network that is limited to this machine uses the loopback interface. Fogline receives with
-// sockets of its own (udpm/group_socket.h).
+// Controls the UDP sockets with which LCM sends. LCM gives no access to these sockets, so this code
+// replaces connect() and setsockopt() of the C library. A network that is limited to this machine
+// uses the loopback interface. Fogline receives with sockets of its own (udpm/group_socket.h).
 //
-// LCM uses the interface of the route to the group, even if all messages stay on the machine
-// (ttl=0). Traffic of this kind ends when the interface, its address or its route disappears, for
-// example when a cable is pulled, a Wi-Fi is lost or a lease ends. The loopback interface does not
-// depend on any of these.
+// Without this code, LCM would send through the interface of the route to the group, even if all
+// messages stay on the machine (ttl=0). Such traffic ends when the interface, its address or its
+// route disappears, for example when a cable is pulled, a Wi-Fi is lost or a lease ends. The
+// loopback interface does not depend on any of these.
 #pragma once
 
 #include <netinet/in.h>
@@ -15,7 +15,7 @@
 namespace fogline::runtime {
 
 /// While an object of this class exists, it controls every UDP socket that LCM opens in the thread
-/// of the object. A thread may have one such object at a time.
+/// that made the object. A thread may have one such object at a time.
 class LcmSockets {
  public:
   /// How far the messages of a network go.
@@ -31,8 +31,8 @@ class LcmSockets {
   LcmSockets(const LcmSockets&) = delete;
   LcmSockets& operator=(const LcmSockets&) = delete;
 
-  // These functions replace connect() and setsockopt() of the C library, and return the same
-  // values.
+  // These functions replace connect() and setsockopt() of the C library. They return the same
+  // values: 0, or -1 with errno.
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
   int OnOption(int socket, int level, int name, const void* value, socklen_t size) const;
 
@@ -58,9 +58,10 @@ class GroupMembership {
  public:
   /// @param socket a socket that has just joined the group on the interface of the route
   GroupMembership(int socket, const std::string& url);
-  /// Joins the group again, on the interface of the current route, if the route leads to another
-  /// interface or the interface has lost the group. The socket first leaves the group on the
-  /// interface where it joined the group. If the socket cannot join, prints the reason on stderr.
+  /// Checks whether the current route leads to another interface, or whether the interface has lost
+  /// the group. If so, the socket leaves the group on its earlier interface, and joins the group on
+  /// the interface of the route. If the socket cannot join, prints the reason on stderr. Does
+  /// nothing while there is no route.
   void Renew();
 
  private:

@@ -33,8 +33,8 @@ constexpr std::string_view kReceiveBuffer = "recv_buf_size";
 constexpr std::string_view kPorts = "nports";  // mpudpm: number of ports
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
-// The least receive buffer that may be announced, in bytes. With a smaller buffer, a program that
-// joins the run would lose most messages of the run.
+// The smallest receive buffer that may be announced, in bytes. With a smaller buffer, a program
+// that joins the run would lose most messages of the run.
 constexpr int kLeastAnnouncedBuffer = 100'000;
 
 std::optional<in_addr> ParseAddress(std::string_view text) {
@@ -121,7 +121,7 @@ std::string ReadMulticast(std::string_view url, MulticastAddress& address) {
     const std::string_view name = TakeUntil('=', value);
     why = ReadOption(many_ports, name, value, address);
   }
-  // LCM would go on with port 0 after port 65535.
+  // With mpudpm, LCM would continue with port 0 after port 65535.
   if (why.empty() && address.port + address.ports - 1 > kMostPort) {
     return fmt::format("the last of {} ports from {} on is above {}", address.ports, address.port,
                        kMostPort);

@@ -49,23 +49,23 @@ MulticastAddress MulticastAddressOf(std::string_view url);
 
 /// Says what is wrong in a URL of an LCM network; "" if nothing is wrong. An error can be in the
 /// beginning of the text, in the address of udpm or mpudpm, in the port, or in an option. The host
-/// of a relay (tcpq) is read only when it is needed (tcpq_url.h). Fogline accepts fewer URLs than
-/// LCM does. LCM ignores unknown options, also a mistyped ttl, and it reads 010 as 8.
+/// of a relay (tcpq) is not checked here (tcpq_url.h). Fogline accepts fewer URLs than LCM does.
+/// LCM ignores unknown options, also a mistyped ttl, and it reads 010 as 8.
 std::string WhyWrongUrl(std::string_view url);
 
 /// @param source the source of the URL, such as "--lcm-url"
-/// @throws InputError that names the source, if WhyWrongUrl() finds something
+/// @throws InputError that names the source, if WhyWrongUrl() finds an error
 void CheckUrl(std::string_view source, const std::string& url);
 
-/// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
-/// port, otherwise the whole URL without its options.
+/// Whether two URLs name one network. Compares group and port of udpm URLs, host and port of tcpq
+/// URLs, and the text before the options of other URLs.
 bool SameNetwork(std::string_view a, std::string_view b);
 
-/// Whether a program may join this network if the program knows it only from a message. The URL may
-/// name a relay of this machine, with its address in numbers. The URL may also name a multicast
-/// group whose traffic ends at the next router or before (ttl 0 or 1). If such a URL gives the size
-/// of the receive buffer, the size must be between 100 kB and kWideBuffer. mpudpm is refused,
-/// because no filter protects LCM's parser.
+/// Whether a program may join this network if the program knows the URL only from a message. The
+/// URL may name a relay of this machine, with its address in numbers. The URL may also name a
+/// multicast group whose traffic ends at the next router or before (ttl 0 or 1). If such a URL
+/// gives the size of the receive buffer, the size must be between 100 kB and kWideBuffer. mpudpm is
+/// refused: it has no filter, so every packet would reach LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
 }  // namespace fogline::runtime

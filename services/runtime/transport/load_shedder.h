@@ -1,5 +1,5 @@
-// A limit for floods of messages. A process accepts only a share of the messages, so that it can
-// handle them. The kernel drops the other messages before they fill the receive buffer. These
+// Limits floods of messages. A process accepts only a share of the messages, so that it can handle
+// them. The kernel drops the other messages before they fill the receive buffer. The dropped
 // messages cost the process nothing.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace fogline::runtime {
 
 class LoadShedder {
  public:
-  /// @param per_second messages that the process can handle
+  /// @param per_second the number of messages that the process can handle in a second
   explicit constexpr LoadShedder(double per_second) : per_second_(per_second) {}
 
   /// Counts a message that has come. @return the share of messages to accept from now on; nullopt

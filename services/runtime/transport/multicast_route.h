@@ -34,10 +34,12 @@ std::string RouteInterface(std::string_view table, const std::string& address);
 /// A table of the kernel, such as /proc/net/route; "" if it cannot be read.
 std::string KernelTable(const char* file);
 
-/// Whether an interface receives a multicast group, by a table in the form of /proc/net/igmp.
+/// Whether an interface receives a multicast group, according to `table`.
+/// @param table in the form of /proc/net/igmp
 bool HasGroup(std::string_view table, std::string_view interface, const std::string& group);
 
-/// Why a udpm:// URL cannot be opened, and what to do about it; "" if no reason is known.
+/// Why a udpm:// or mpudpm:// URL cannot be opened, and what the user can do; "" if no reason is
+/// known.
 std::string WhyNoMulticast(std::string_view url);
 
 }  // namespace fogline::runtime

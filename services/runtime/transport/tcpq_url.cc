@@ -46,7 +46,7 @@ std::string AddressOf(const std::string& host, std::string_view what) {
 }
 
 /// Calls `call`, such as bind(), with a new socket of this type and with the address of `place`.
-/// @return errno if the call fails; 0 if it succeeds, or if there is no socket
+/// @return errno if the call fails; 0 if it succeeds, or if no socket can be opened
 template <class Call>
 int ErrorOf(int type, const Endpoint& place, const Call& call) {
   sockaddr_in address{};
@@ -61,7 +61,7 @@ int ErrorOf(int type, const Endpoint& place, const Call& call) {
   return error;
 }
 
-/// Listens as a server does: also at a port that only closed connections still use.
+/// Listens as a server does: SO_REUSEADDR allows a port that only closed connections still use.
 int BindAndListen(int socket, const sockaddr* address, socklen_t size) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -72,7 +72,7 @@ int BindAndListen(int socket, const sockaddr* address, socklen_t size) {
 /// the address does not belong to this machine. But bind() accepts multicast and broadcast
 /// addresses, to which no client can connect. connect() of a UDP socket sends no packet, and fails
 /// with EACCES for a broadcast address. But without a route, connect() does not report this error
-/// for 255.255.255.255.
+/// for 255.255.255.255. So this function compares the address with 255.255.255.255 itself.
 bool IsOwn(const std::string& address) {
   return !IsMulticast(address) && address != "255.255.255.255" &&
          ErrorOf(SOCK_STREAM, {address, 0}, bind) != EADDRNOTAVAIL &&

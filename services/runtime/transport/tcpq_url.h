@@ -33,14 +33,14 @@ Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 /// Whether this text for Resolve() names a port.
 bool HasPort(std::string_view host_and_port);
 
-/// Says that a process cannot listen at a place.
+/// Throws an error that says why a process cannot listen at `place`.
 /// @throws InputError that names `what` if the port is busy, if this user may not use the port, or
 ///     if this machine does not have the address; std::runtime_error for other reasons, and for
 ///     port 0 (any free port)
 [[noreturn]] void ThrowCannotListen(const Endpoint& place, std::string_view what,
                                     std::error_code why);
 
-/// Checks that a process of this machine can listen at a place now. Another program may take the
+/// Checks that a process of this machine can listen at `place` now. Another program may take the
 /// port afterwards. @throws as ThrowCannotListen()
 void RequireFree(const Endpoint& place, std::string_view what);
 

@@ -41,7 +41,7 @@ struct Treatment {
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SigningKey::Load(options.key_file);
   // A user who sets the variable wants signatures. An empty variable may come from a script that
-  // has not found the key's file.
+  // has not found the key's file. So an empty variable is an error.
   if (const char* variable = std::getenv(kKeyVariable); variable != nullptr && *variable == '\0') {
     throw InputError(fmt::format(
         "error: {} is empty: name the key's file, or unset it to run unsigned", kKeyVariable));
@@ -54,7 +54,8 @@ void Check(const TrafficOptions& options) { Treatment{options}; }
 std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& options,
                              std::optional<Role> role) {
   const Treatment treatment(options);
-  // Checked first, because LCM may print a line of its own when a network of mpudpm is closed.
+  // This check refuses an mpudpm network before the network is opened, because LCM may print a line
+  // of its own when an mpudpm network is closed.
   if (treatment.key) RequireSignable(url);
   auto bus = std::make_unique<Bus>(url);
   treatment.Apply(role, *bus);

@@ -28,8 +28,8 @@ void Check(const TrafficOptions& options);
 
 /// Opens a network with the options.
 /// @param role as in Apply()
-/// @throws as Bus(), and InputError when the options, or the key's file, are wrong, or the network
-///     takes no key
+/// @throws as Bus(), and InputError when the options, or the key's file, are wrong, or if the
+///     network cannot be used with a key
 std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& options,
                              std::optional<Role> role);
 

@@ -8,9 +8,9 @@
 
 namespace fogline::runtime {
 
-/// The bytes of a message and the decoded message. The bytes are decoded and checked when the first
-/// reader asks, and only once for all readers. One object serves all messages of a channel, so only
-/// the first message allocates memory.
+/// The bytes of a message and the decoded message. When the first reader asks for the message, this
+/// class decodes and checks the bytes. All other readers get the same result. One object serves all
+/// messages of a channel, so only the first message allocates memory.
 class Arrival {
  public:
   /// Takes the next message. The bytes must stay valid while the readers of this message are
@@ -22,8 +22,8 @@ class Arrival {
   }
 
   Bytes bytes() const { return bytes_; }
-  /// When the message was handled. The bus does not read its clock for every message. So this may
-  /// be the time of a slightly earlier message.
+  /// The time at which the bus handled the message. The bus does not read its clock for every
+  /// message, so the result may be the time of a slightly earlier message.
   TimePoint time() const { return time_; }
   /// The bytes, for handlers with a parameter of type Bytes.
   operator Bytes() const { return bytes_; }
@@ -34,7 +34,8 @@ class Arrival {
     const Reading<M>& reading = Read<M>();
     return reading.wrong == nullptr ? &reading.message : nullptr;
   }
-  /// The counter for the reason why the bytes are not a valid M; nullptr if they are valid.
+  /// The counter in status_t for the kind of error in the bytes; nullptr if the bytes are a valid
+  /// M.
   template <class M>
   RefusalCounter Wrong() {
     return Read<M>().wrong;

@@ -16,8 +16,8 @@
 namespace fogline::runtime {
 namespace {
 
-// Linkers put the program headers after the file's header, and the notes after the program headers.
-// So the first kilobytes contain everything that is read here.
+// Linkers put the program headers after the ELF header, and the notes after the program headers. So
+// the first 64 KiB of a file contain everything that this code needs.
 constexpr std::size_t kBeginning = 1 << 16;
 // A note's name and content each begin at a multiple of this number of bytes.
 constexpr std::size_t kNoteAlignment = 4;

@@ -36,7 +36,8 @@ sock_filter Load(std::size_t size, std::size_t offset) {
                   static_cast<std::uint32_t>(offset));
 }
 
-/// The distance of a jump, as the single byte that an instruction has for it.
+/// Converts the distance of a jump to the one byte in which an instruction stores the distance.
+/// @throws std::logic_error if the distance does not fit into one byte
 std::uint8_t Jump(std::size_t instructions) {
   if (instructions > std::numeric_limits<std::uint8_t>::max()) {
     throw std::logic_error(fmt::format("a filter would jump over {} instructions", instructions));
@@ -63,7 +64,7 @@ std::uint32_t BigEndian(std::string_view bytes) {
 }
 
 /// Appends instructions that compare the datagram with `text` at offset `at`. If the datagram
-/// differs, the next `then` instructions after these are skipped.
+/// differs, the filter skips the rest of these instructions and the next `then` instructions.
 void AppendText(std::string_view text, std::size_t at, std::size_t then,
                 std::vector<sock_filter>& program) {
   struct Piece {
@@ -85,8 +86,8 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
   }
 }
 
-/// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For a
-/// datagram of another channel, the program continues after these instructions.
+/// Appends instructions for one wanted channel: they accept or drop a datagram of this channel. For
+/// a datagram of another channel, the program continues after these instructions.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with final 0
   std::vector<sock_filter> contents;

@@ -20,7 +20,8 @@
 
 namespace fogline::runtime {
 
-/// Which messages of a channel are wanted: messages whose data has one of `texts` at `offset`.
+/// Selects messages of a channel by their data: a wanted message has one of `texts` at `offset` (in
+/// bytes).
 struct Contents {
   std::size_t offset = 0;
   std::vector<std::string> texts;
@@ -34,14 +35,14 @@ struct Wanted {
   double share = 1;
 };
 
-/// A filter program that takes only LCM datagrams ("LC02": int32 sequence number, channel, 0, data)
-/// on these channels. It drops fragments of large messages ("LC03"), and datagrams that are longer
-/// than a message with the longest channel name, kMaxMessageBytes of data and a signature.
+/// A filter program that accepts only LCM datagrams ("LC02": int32 sequence number, channel, 0,
+/// data) on these channels. It drops fragments of large messages ("LC03"), and datagrams that are
+/// longer than a message with the longest channel name, kMaxMessageBytes of data and a signature.
 /// @throws std::logic_error if the contents of a channel need more instructions than a jump can
 ///     skip
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
-/// A filter program that takes the messages of all channels: every whole LCM message that is not
+/// A filter program that accepts the messages of all channels: every whole LCM message that is not
 /// too large and whose channel name ends with a 0.
 std::vector<sock_filter> AnyChannelFilter();
 

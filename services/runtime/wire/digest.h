@@ -26,9 +26,9 @@ class Hash {
   std::unique_ptr<State> state_;
 };
 
-/// Computes BLAKE2b-256 of the payloads of all kStep channels, step by step, and in the order of
-/// the graph table within a step. The run id is not included, because the id names a run but does
-/// not describe the run.
+/// Computes BLAKE2b-256 of the payloads of all channels with a message in each step (Pace::kStep),
+/// step by step, and in the order of the graph table within a step. The run id is not included,
+/// because the id names a run but does not describe the run.
 class Digest {
  public:
   /// Adds one encoded message (at least kHeaderEnd bytes).

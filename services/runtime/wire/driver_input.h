@@ -16,8 +16,8 @@ inline constexpr Duration kInputEvery = milliseconds(50);
 /// A seat sends at most this many messages in a second. Our choice: the fastest gamepads report 250
 /// times a second over Bluetooth.
 inline constexpr double kMostInputsPerSecond = 250;
-/// The number of messages of a seat that may come in one burst. A network that has stopped for 0.2
-/// s then delivers this many messages together.
+/// The number of messages of a seat that may come in one burst. After a stop of 0.2 s, a network
+/// delivers this many messages together.
 inline constexpr double kMostInputsAtOnce = 50;
 /// Longest name of a device, in bytes of UTF-8.
 inline constexpr std::size_t kMostDeviceBytes = 64;

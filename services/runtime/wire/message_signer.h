@@ -4,10 +4,10 @@
 //
 //   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
 //
-// The tag is the keyed BLAKE2b hash (RFC 7693) of the channel's name, a 0, the sender and the
-// payload. The payload's own header contains run id and step. So a message is not valid in another
-// run, in another step, on another channel or from another role. All processes share one key: a
-// process that has the key can sign as any role. The key id distinguishes keys and protects
+// The tag is the keyed BLAKE2b hash (RFC 7693) of the channel's name, a zero byte, the sender and
+// the payload. The payload's own header contains run id and step. So a message is not valid in
+// another run, in another step, on another channel or from another role. All processes share one
+// key: a process that has the key can sign as any role. The key id distinguishes keys and protects
 // nothing.
 #pragma once
 
@@ -41,8 +41,8 @@ class SigningKey {
   ///     users can read or change it.
   static SigningKey Load(const std::filesystem::path& file);
   /// Writes a random key into a new file that only its owner can read.
-  /// @throws InputError when the file exists or cannot be created; std::runtime_error when the disk
-  ///     is full
+  /// @throws InputError when the file exists or cannot be created; std::runtime_error when the key
+  ///     cannot be written, for example because the disk is full
   static void Create(const std::filesystem::path& file);
 
   const Secret& secret() const { return secret_; }
@@ -71,7 +71,7 @@ inline Bytes WithoutSignature(Bytes message) {
 class MessageSigner {
  public:
   /// @param sender this process's role; nullopt if the process has every role (a run in memory).
-  ///     Each message is then signed as if its producer had signed it.
+  ///     With nullopt, each message is signed as its producer would sign it.
   MessageSigner(const SigningKey& key, std::optional<Role> sender)
       : key_(key), id_(IdOf(key)), sender_(sender) {}
 
@@ -81,7 +81,7 @@ class MessageSigner {
   enum class Verdict {
     kGood,
     kNotSigned,    // without a trailer
-    kBadlySigned,  // another key, altered bytes, or a sender without the right to publish
+    kBadlySigned,  // another key, altered bytes, or a sender without the right to send the message
   };
   struct Opened {
     Verdict verdict;

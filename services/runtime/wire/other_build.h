@@ -16,7 +16,7 @@ namespace fogline::runtime {
 /// The build of each role's program in the runner's folder, by index in kRoles.
 using RoleBuilds = std::array<BuildId, kRoles.size()>;
 
-/// A process whose build differs from the runner's build or is not known.
+/// A process whose build differs from the runner's build, or whose build cannot be compared.
 struct OtherBuild {
   Role role;
   std::int32_t pid;
@@ -29,8 +29,9 @@ struct OtherBuild {
   std::string Text() const;
 };
 
-/// The build of a role's process if it differs from the expected build or is unknown; nullopt if
-/// both builds are equal.
+/// The process that sent `status` and its build, if this build differs from the expected build or
+/// if one of the two builds is unknown; nullopt if both builds are known and equal.
+/// @param ours the expected builds
 std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const RoleBuilds& ours);
 
 }  // namespace fogline::runtime

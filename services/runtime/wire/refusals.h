@@ -13,7 +13,7 @@ namespace fogline::runtime {
 struct RefusalKind {
   std::string_view key;  // name in JSON and in status_t
   std::int64_t status_t::*counter;
-  std::string_view what;  // completes "refused messages: 3 ..."
+  std::string_view what;  // the words after the count in "refused messages: 3 ..."
 };
 
 inline constexpr std::array kRefusals{

@@ -16,8 +16,8 @@ namespace fogline::runtime {
 inline constexpr std::size_t kPartBytes = 1000;
 
 /// The range of a run's speed, in simulated seconds per second. At these speeds, a step of 0.1 s
-/// takes between 0.1 ms and 100 s. The range keeps all times that are computed from the speed
-/// finite.
+/// takes between 0.1 ms and 100 s. Within this range, all times that are computed from the speed
+/// are finite.
 inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
 inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }

@@ -11,8 +11,8 @@
 namespace fogline::runtime {
 
 /// The number of steps that a ring stores. The world runs at most kMaxAhead steps ahead of the
-/// recorder. So any step that a role asks for is either in the ring of its producer, or older than
-/// a ring. An older step is on disk, and the recorder answers requests for it.
+/// recorder. So each step that a role asks for is in the ring of the channel's producer or already
+/// on disk. For steps on disk, the recorder answers the requests.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "some steps would be neither in a ring nor on disk");
@@ -31,23 +31,25 @@ inline constexpr std::size_t RingSlot(std::int64_t step) {
   return static_cast<std::size_t>(step % kRingSteps);
 }
 
-/// Ring of messages. Buffers are reused: when they have reached the size of the messages, nothing
-/// is allocated.
+/// Ring of messages. The ring reuses its buffers: after the buffers have reached the size of the
+/// messages, the ring allocates no memory.
 class StepRing {
  public:
   /// How a message that arrives is judged.
   enum class Verdict {
     kNew,        // must be stored with Store()
     kDuplicate,  // known already, or so old that it is not needed
-    // The ring has other bytes for the step of this message. There are two producers, or a producer
-    // whose output is not a function of its inputs.
+    // The ring has other bytes for the step of this message. Either the channel has two producers,
+    // or the output of its producer is not a function of its inputs.
     kConflict,
-    kOutOfWindow,  // of a step that cannot be under way yet
-    kElsewhere,    // of no use to this role, but its step is known to be under way
-    kLate,         // came after the end of its step
+    kOutOfWindow,  // of a step that cannot have begun yet
+    // The message is of a current step of the run. The reader of this ring is far behind and still
+    // computes older steps, so it ignores the message.
+    kElsewhere,
+    kLate,  // came after the end of its step
   };
 
-  /// Judges a message of a step in lockstep.
+  /// Judges a message of a step, in a run in lockstep.
   /// @param needed the next step that the reader of this ring needs
   Verdict Classify(std::int64_t step, Bytes bytes, std::int64_t needed) const {
     const Slot& slot = slots_[RingSlot(step)];

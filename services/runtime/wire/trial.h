@@ -1,4 +1,5 @@
-// The limits of the contents of a TRIAL. All programs that send or read TRIAL use these limits.
+// The limits of the contents of a TRIAL message. All programs that send or read TRIAL messages use
+// these limits.
 #pragma once
 
 #include <algorithm>

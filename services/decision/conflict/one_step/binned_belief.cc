@@ -11,7 +11,7 @@ namespace {
 
 // Largest number of bins of one belief. The bins cover 6 standard deviations on each side if the
 // standard deviation is at most 5 bin widths. With a larger standard deviation, the bins cover
-// less, and the outermost bins contain the remaining probability.
+// fewer standard deviations, and the outermost bins contain the remaining probability.
 constexpr std::int64_t kMostBins = 64;
 constexpr double kReach = 6;  // standard deviations; the probability outside is 2e-9
 
@@ -74,7 +74,7 @@ BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters
   const double eta_1 = parameters.radar_reliability;
   const double eta_2 = parameters.lidar_reliability;
   const double n = parameters.frame_bins;
-  const double theta_difference = (eta_2 - eta_1) / n;  // part of BetP1 - BetP2 in each bin
+  const double theta_difference = (eta_2 - eta_1) / n;  // Theta's part of BetP1 - BetP2, per bin
 
   BinnedPair pair{.reliability_1 = eta_1, .reliability_2 = eta_2, .bins = n};
   std::int64_t used = 0;

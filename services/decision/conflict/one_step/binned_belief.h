@@ -9,10 +9,10 @@
 
 namespace fogline::conflict {
 
-/// Sums over two bodies of evidence m1 and m2, sufficient for all measures below. m1 and m2 give a
-/// mass to each focal set. The focal sets are the single bins, and the whole frame Theta of n bins.
-/// The mass of Theta is 1 - eta, where eta is the sensor's reliability. BetP1 and BetP2 are the
-/// pignistic probabilities: the mass of Theta is divided equally among the bins.
+/// Sums over two bodies of evidence m1 and m2. All measures below can be computed from these sums.
+/// m1 and m2 give a mass to each focal set. The focal sets are the single bins, and the whole frame
+/// Theta of n bins. The mass of Theta is 1 - eta, where eta is the sensor's reliability. BetP1 and
+/// BetP2 are the pignistic probabilities: the mass of Theta is divided equally among the bins.
 struct BinnedPair {
   double common = 0;         // sum over bins of m1 m2
   double square_1 = 0;       // sum over bins of m1^2
@@ -28,13 +28,13 @@ struct BinnedPair {
 /// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is put on an edge
 /// of the grid, so the pair depends only on the difference of the readings. The sign of the
 /// difference has no effect. A reading within a bin and a reading on an edge give different
-/// evidence, even with equal precision. So a measure does not always grow with the difference. At
-/// each multiple of the bin width, it is larger than at the multiple before. But between two
-/// multiples it may fall while the difference grows.
+/// evidence, even if their standard deviations are equal. So a measure does not always grow with
+/// the difference. At each multiple of the bin width, the measure is larger than at the next
+/// smaller multiple. But between two multiples, the measure may fall while the difference grows.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
-/// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). k has
-/// a known defect: it is above 0 for equal evidence.
+/// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). A
+/// known defect of k is that k is above 0 even for equal evidence.
 double DempsterConflict(const BinnedPair& pair);
 
 /// Jousselme's distance d_J = sqrt((m1 - m2)' D (m1 - m2)/2), in [0, 1], with

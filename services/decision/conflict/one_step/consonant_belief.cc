@@ -31,7 +31,8 @@ double Excess(double low, double high, double d, double s1, double s2) {
 }
 
 // Key of a value of JaccardProduct(). Several measures need the same products in a step. So each
-// thread keeps the most recent products (RecentProducts), as many as the measures need in one step.
+// thread keeps its most recent products (RecentProducts). It keeps enough products for all measures
+// of one step.
 struct ProductKey {
   int levels = 0;
   double distance_m = 0;
@@ -72,9 +73,9 @@ double MaxwellBelow(double y) {
 }
 
 double ConsonantConflict(const Disagreement& disagreement) {
-  // The integral is over the intervals of the narrower belief, because F of the wider belief varies
-  // slowly over these intervals. The integral ends at y = 9, because the integral of f beyond 9 is
-  // below 1e-16.
+  // The integral is over the intervals of the narrower belief, because the distribution function F
+  // (MaxwellBelow()) of the wider belief varies slowly over these intervals. The integral ends at
+  // y = 9, because the integral of the density f (MaxwellDensity()) beyond 9 is below 1e-16.
   constexpr double kReach = 9;
   constexpr int kNodes = 30;
   const double d = std::abs(disagreement.difference_m);
@@ -91,11 +92,11 @@ double ConsonantPignisticDistance(const Disagreement& disagreement) {
   const double d = std::abs(disagreement.difference_m);
   const double s1 = disagreement.radar_std_m;
   const double s2 = disagreement.lidar_std_m;
-  // The densities are equal at a x^2 + b x + c = 0, with x relative to the first mean.
+  // The densities are equal where a x^2 + b x + c = 0. x is the distance from the first mean.
   const double a = 1 / (s1 * s1) - 1 / (s2 * s2);
   const double b = 2 * d / (s2 * s2);
   const double c = -d * d / (s2 * s2) - 2 * std::log(s2 / s1);
-  // b >= 0, so q has no cancellation. The roots are q/a and c/q. For equal precisions, q/a is
+  // b >= 0, so q has no cancellation. The roots are q/a and c/q. If s1 = s2, a is 0, and q/a is
   // infinite.
   const double q = -(b + std::sqrt(std::max(0.0, b * b - 4 * a * c))) / 2;
   if (q == 0) return 0;  // equal readings

@@ -1,6 +1,6 @@
 // Represents a sensor reading as a belief of evidence theory (Dempster-Shafer). The focal sets of
-// the belief are nested (consonant). Of all beliefs that fit the reading, it is the least-committed
-// one, which claims least. This file also computes measures of conflict between two beliefs.
+// the belief are nested (consonant). Of all beliefs that fit the reading, this belief claims least
+// (the least-committed belief). This file also computes measures of conflict between two beliefs.
 #pragma once
 
 #include <array>
@@ -9,10 +9,11 @@
 
 namespace fogline::conflict {
 
-/// The least-committed of all belief densities whose pignistic probability is the sensor's Gaussian
-/// N(mu, s^2). The focal sets are the nested intervals [mu - y s, mu + y s], with the Maxwell
-/// density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al. 2008).
-/// This belief does not need a frame with bins or a reliability.
+/// The least-committed belief density among all densities whose pignistic probability is the
+/// sensor's Gaussian N(mu, s^2). The focal sets are the nested intervals [mu - y s, mu + y s], with
+/// the Maxwell density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et
+/// al. 2008). This belief needs no frame with bins, and no reliability of the sensor. (A belief in
+/// binned_belief.h needs both.)
 ///
 /// mu is the reading, and s its standard deviation. Dempster's conflict k and the pignistic
 /// distance are computed from the density itself (functions below). The other measures need sums
@@ -40,8 +41,9 @@ class ConsonantBeliefs {
 
   /// Jousselme's distance d_J, in [0, 1].
   double JousselmeDistance(const Disagreement& disagreement) const;
-  /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves would be 0 for all
-  /// different readings, because intervals of two different readings are never the same set.
+  /// 1 - cosine of the contours, in [0, 1]. For two different readings, the cosine of the masses
+  /// themselves would always be 0, because an interval of one reading is never equal to an interval
+  /// of the other reading.
   double CosineConflict(const Disagreement& disagreement) const;
   /// 1 - r, with r = c12/sqrt(c11 c22), in [0, 1].
   double CorrelationConflict(const Disagreement& disagreement) const;
@@ -66,8 +68,8 @@ double ConsonantConflict(const Disagreement& disagreement);
 
 /// Pignistic distance difBetP, in [0, 1]: the largest difference, over all sets of ranges, between
 /// the pignistic probabilities of the two readings. These probabilities are the Gaussians
-/// themselves, so difBetP is the total variation of the Gaussians. The maximum is reached on the
-/// interval between the points of equal density. At d = 0, difBetP is above 0 if the standard
+/// themselves, so difBetP is the total variation of the Gaussians. The difference is largest for
+/// the interval between the points of equal density. At d = 0, difBetP is above 0 if the standard
 /// deviations differ.
 double ConsonantPignisticDistance(const Disagreement& disagreement);
 

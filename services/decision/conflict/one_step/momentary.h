@@ -9,8 +9,8 @@
 namespace fogline::conflict {
 
 /// A measure that depends only on the disagreement of the step. Score is a function
-/// double(Disagreement). A skipped step has the score 0. With the rule `hold`, a step with a
-/// missing value before the first measured difference also has the score 0.
+/// double(Disagreement). The score is 0 in a step for which DisagreementSource::Next() returns no
+/// disagreement, for example if a sensor has no value and such steps are skipped.
 template <class Score>
 class Momentary final : public ConflictMeasure {
  public:

@@ -6,12 +6,13 @@
 
 namespace fogline::conflict {
 
-/// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
-/// services/decision/conflict/over_time/degree_of_conflict.h). If z is the mean of absolute
-/// differences, the expected z without a fault and without an offset is sqrt(2 S/pi), with the
-/// variance S of the difference (disagreement.h). Only this measure uses the difference in metres;
-/// the others divide it by its standard deviation. The offset of the sensors is not subtracted. A
-/// skipped step adds an empty entry to the window.
+/// DoC = 1/(1 + exp(-slope (z - centre))), in [0, 1], where z is the windowed conflict (Sourav &
+/// Cheng 2024; services/decision/conflict/over_time/degree_of_conflict.h). If z is the mean of
+/// absolute differences, the expected z is sqrt(2 S/pi) without a fault and without an offset. S is
+/// the variance of the difference (disagreement.h). This measure uses only the difference in
+/// metres. All other measures also use the standard deviations of the ranges. The offset of the
+/// sensors is not subtracted. A step without a difference (DisagreementSource::Next()) adds an
+/// empty entry to the window.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);

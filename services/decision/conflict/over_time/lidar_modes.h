@@ -10,9 +10,9 @@
 namespace fogline::conflict {
 
 /// Posterior probabilities mu_j of LiDAR modes that change as a Markov chain, as in the IMM
-/// (interacting multiple model, Blom & Bar-Shalom 1988). Here the modes are modes of measurement,
-/// not of motion. p_ij is the probability of mode j after mode i, and Lambda_j the likelihood of
-/// the step's LiDAR value in mode j:
+/// (interacting multiple model, Blom & Bar-Shalom 1988). Here the modes are modes of the LiDAR's
+/// measurement, not modes of the car's motion. p_ij is the probability of mode j after mode i, and
+/// Lambda_j the likelihood of the step's LiDAR value in mode j:
 ///
 ///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / (sum_k c_k Lambda_k)
 ///
@@ -25,9 +25,9 @@ namespace fogline::conflict {
 /// deviation that the LiDAR states. E and V are the mean and the variance of fog_scatter_m times a
 /// random number with the distribution Beta(2, 20). e is the share of stray echoes, which lie
 /// anywhere in the range R (conflict_parameters.h has r* and all other numbers). The likelihood of
-/// no echo is 1 - P_echo,j. A missing LiDAR value is evidence of a mode, so the rule for missing
-/// values does not apply. If there is an echo but no reference range, only the Markov chain
-/// advances.
+/// no echo is 1 - P_echo,j. A missing LiDAR value is evidence of a mode, so
+/// ConflictParameters::missing has no effect. If there is an echo but no reference range, only the
+/// Markov chain advances.
 class LidarModes {
  public:
   using Probabilities = std::array<double, kLidarModes>;  // order of LidarMode; add up to 1

@@ -7,13 +7,13 @@
 
 namespace fogline::conflict {
 
-/// Mean of the n values of a window; 0 if it is empty.
+/// Mean of the n values of a window; 0 if the window is empty.
 double Mean(const Window& window);
-/// sum / sqrt(n) of the n values of a window; 0 if it is empty.
+/// sum / sqrt(n) of the n values of a window; 0 if the window is empty.
 double StandardisedMean(const Window& window);
 
 /// Mean of NIS (divergence.h) over the window, at least 0. Without a fault, n times the mean of n
-/// values is chi-square with n degrees of freedom.
+/// values has the chi-square distribution with n degrees of freedom.
 using WindowedNis = Windowed<NormalisedSquare, Mean, &ConflictParameters::window_steps>;
 
 /// T = sum u_i / sqrt(n) over the n differences of the window, any real number. u = d/sqrt(S) is

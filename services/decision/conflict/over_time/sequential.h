@@ -6,15 +6,15 @@
 namespace fogline::conflict {
 
 /// Cumulative sum g of the standardised difference u = d/sqrt(S) of each step (Page 1954;
-/// disagreement.h). The sum is one-sided, because fog shortens the LiDAR's range. The value g+
-/// after a step is
+/// disagreement.h). The sum detects only a positive shift of d, because fog shortens the LiDAR's
+/// range. The value g+ after a step is
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
-/// in standard deviations. Take two such tests of opposite sign with kappa = 0.5 and a threshold of
-/// 4. Without a fault, they give a false alarm after 168 steps on average. After a shift by one
-/// standard deviation, they give the alarm after 8.4 steps on average. With a threshold of 5 these
-/// averages are 465 and 10.4 steps. A skipped step does not change g.
+/// in standard deviations. Example: two tests of opposite sign run together, with kappa = 0.5 and a
+/// threshold of 4. Without a fault, they give a false alarm after 168 steps on average. After a
+/// shift by one standard deviation, they give the alarm after 8.4 steps on average. With a
+/// threshold of 5, these averages are 465 and 10.4 steps. A skipped step does not change g.
 class Cusum final : public ConflictMeasure {
  public:
   explicit Cusum(const ConflictParameters& parameters);
@@ -54,9 +54,10 @@ SprtBounds WaldBounds(double alpha, double beta);
 ///
 /// d is the difference of the step and S its variance (disagreement.h); ceiling is sprt_ceiling.
 /// The score is L. If L is at least accept_conflict, the test accepts the conflict. If L is
-/// accept_agreement, the test accepts agreement. L never falls below this bound, so later evidence
-/// of conflict has an effect without delay. The two bounds are a hysteresis with known error
-/// probabilities. A skipped step does not change L.
+/// accept_agreement, the test accepts agreement. L never falls below accept_agreement, so later
+/// evidence of conflict has an effect without delay. If L lies between the bounds, the test makes
+/// no decision. So the bounds act as a hysteresis with known error probabilities. A skipped step
+/// does not change L.
 class Sprt final : public ConflictMeasure {
  public:
   explicit Sprt(const ConflictParameters& parameters);

@@ -25,17 +25,19 @@ namespace fogline::conflict {
 ///
 /// The sum is over the last n residuals u, with n at most blame_window_steps. z is the sensor's
 /// range, s its standard deviation, and s_p the standard deviation of the prediction. If n is 1,
-/// T^2 is the NIS. An error of the prediction lasts for several steps, so the residuals of these
-/// steps are correlated. So T of a long window scatters more than a standard normal number.
+/// T^2 is the normalised innovation squared (NIS). An error of the prediction lasts for several
+/// steps, so the residuals of these steps are correlated. Therefore T of a long window scatters
+/// more than a standard normal number.
 class SensorResidual {
  public:
   /// @param nominal_std_m standard deviation to use before the sensor has stated one
-  /// @param missing_error_m error of a missing value if it counts as conflict
+  /// @param missing_error_m error of a missing value, if missing values count as conflict
   SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
                  double missing_error_m);
 
-  /// T after this step; 0 without a prediction or a residual. A missing value repeats the last
-  /// residual, adds no residual, or counts as conflict; parameters.missing chooses the rule.
+  /// T after this step; 0 if there is no prediction, or no residual in the window. A missing value
+  /// repeats the last residual, adds no residual, or counts as conflict; parameters.missing chooses
+  /// the rule.
   double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
   void Reset();
 
@@ -53,16 +55,17 @@ class SensorResidual {
 };
 
 /// Blame of a sensor = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)), with T
-/// of SensorResidual. It is 1 minus the p-value of the test that the sensor has no fault. If the
-/// sensor has no fault and T is standard normal, the blame is uniformly distributed over [0, 1].
+/// of SensorResidual. This blame is 1 minus the p-value of the test that the sensor has no fault.
+/// If the sensor has no fault and T is standard normal, the blame is uniformly distributed over
+/// [0, 1].
 class NisBlame final : public BlameMeasure {
  public:
   explicit NisBlame(const ConflictParameters& parameters);
 
   Blame Step(const Evidence& evidence) override;
   void Reset() override;
-  /// max T^2 of the two sensors in the last step, at least 0. This square still distinguishes large
-  /// values of T, for which the blame rounds to 1.
+  /// The larger T^2 of the two sensors in the last step, at least 0. For large T, the blame rounds
+  /// to 1, but T^2 still shows differences.
   double largest_square() const { return largest_square_; }
 
  private:
@@ -72,7 +75,7 @@ class NisBlame final : public BlameMeasure {
   double largest_square_ = 0;
 };
 
-/// max T^2 of NisBlame, at least 0.
+/// The larger T^2 of the two sensors (NisBlame), at least 0.
 class NisWitness final : public ConflictMeasure {
  public:
   explicit NisWitness(const ConflictParameters& parameters) : blame_(parameters) {}
@@ -84,8 +87,9 @@ class NisWitness final : public ConflictMeasure {
   NisBlame blame_;
 };
 
-/// Products c of three consonant beliefs (ConsonantBeliefs::JaccardProduct()): the product of a
-/// belief with itself, which is equal for all beliefs, and the product of each pair.
+/// Products c of three consonant beliefs (ConsonantBeliefs::JaccardProduct()). `square` is the
+/// product of a belief with itself, which is equal for all beliefs. The other members are the
+/// products of the pairs.
 struct BeliefProducts {
   double square;
   double radar_lidar;
@@ -93,8 +97,9 @@ struct BeliefProducts {
   double lidar_prediction;
 };
 
-/// Support of the radar and of the LiDAR, each by the two other bodies of evidence (the other
-/// sensor and the prediction). At least 0, in any unit.
+/// Support of a sensor by the two other bodies of evidence: the other sensor and the prediction. A
+/// support is at least 0. Its scale does not matter, because BeliefBlame uses only the ratio of two
+/// supports.
 struct Support {
   double radar;
   double lidar;
@@ -115,11 +120,11 @@ Support MurphySupport(const BeliefProducts& products);
 /// authors' equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
-/// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have
-/// with the same precisions if all three means were equal. So different precisions alone do not
-/// cause blame. For a missing value, the rule `hold` gives the last blame, and the rule `skip`
-/// gives no blame. The rule `conflict` gives a blame of 1 to each sensor without a value, and 0 to
-/// the other sensor.
+/// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have if
+/// all three means were equal and the standard deviations were unchanged. So different standard
+/// deviations alone do not cause blame. For a missing value, the rule `hold` gives the last blame,
+/// and the rule `skip` gives no blame. The rule `conflict` gives a blame of 1 to each sensor
+/// without a value, and 0 to the other sensor.
 class BeliefBlame final : public BlameMeasure {
  public:
   using SupportFunction = Support (*)(const BeliefProducts&);

@@ -11,8 +11,9 @@ namespace fogline::conflict {
 
 /// A measure that uses a window of the last steps. kValue computes a number from the Disagreement
 /// of each step, and kScore computes the score from the Window of these numbers. Both functions
-/// return double. `kSteps` is the parameter with the length of the window. A skipped step adds an
-/// empty entry to the window. An empty window has score 0.
+/// return double. `kSteps` is the parameter with the length of the window. A step for which
+/// DisagreementSource::Next() returns no disagreement adds an empty entry to the window. If all
+/// entries are empty, the score is 0.
 template <auto kValue, auto kScore, int ConflictParameters::*kSteps>
 class Windowed final : public ConflictMeasure {
  public:

@@ -72,7 +72,7 @@ std::optional<Backlog::Packet> Backlog::Take() {
 void Backlog::Receive(const std::stop_token& stop) {
   Packet buffer(most_);
   while (!stop.stop_requested()) {
-    // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
+    // With MSG_TRUNC, recv() returns the size of the whole packet, even if the buffer is too small.
     const ssize_t size = recv(socket_, buffer.data(), buffer.size(), MSG_TRUNC);
     if (size >= 0) {
       const auto bytes = static_cast<std::size_t>(size);

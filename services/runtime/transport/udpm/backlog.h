@@ -24,7 +24,7 @@ class Backlog {
 
   /// @param socket a socket that does not block and that outlives this object
   /// @param most the largest packet, in bytes; longer packets are dropped
-  /// @param wanted whether a packet is kept; called in the thread
+  /// @param wanted whether a packet is kept; called in the backlog's thread
   /// @param capacity in bytes; while the backlog is full, packets stay in the kernel's buffer
   /// @throws std::system_error if the kernel grants no thread or no descriptor
   Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet),

@@ -35,7 +35,8 @@ class ReservedPorts {
       close(socket);
       return false;
     }
-    // LCM's sockets set SO_REUSEADDR, so they can use the port. This socket receives no messages.
+    // LCM's sockets can use the port, because they and this socket set SO_REUSEADDR. This socket
+    // has joined no group and clears IP_MULTICAST_ALL, so it receives no messages.
     constexpr int kYes = 1, kNo = 0;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof(kYes));
     setsockopt(socket, IPPROTO_IP, IP_MULTICAST_ALL, &kNo, sizeof(kNo));

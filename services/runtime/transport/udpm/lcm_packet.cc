@@ -17,7 +17,8 @@ std::uint32_t Number(Bytes bytes, std::size_t offset, std::size_t size) {
   return value;
 }
 
-/// The channel at the beginning of these bytes; nullopt if it has no end, or is too long for LCM.
+/// The channel's name at the beginning of these bytes; nullopt if its final 0 is missing, or if the
+/// name is too long for LCM.
 std::optional<std::string_view> ChannelAt(Bytes bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t length = text.substr(0, kLongestChannel + 1).find('\0');

@@ -34,8 +34,9 @@ struct LcmPacket {
 inline constexpr std::size_t kPacketHead = 20 + kLongestChannel + 1;
 
 /// Reads the head of a packet.
-/// @param head the packet, or its first kPacketHead bytes; `channel` refers to these bytes
-/// @return nullopt if LCM would not take the packet
+/// @param head the packet, or its first kPacketHead bytes; LcmPacket::channel is a view of these
+///     bytes
+/// @return nullopt if LCM would not accept the packet
 std::optional<LcmPacket> ParsePacket(Bytes head);
 
 }  // namespace fogline::runtime

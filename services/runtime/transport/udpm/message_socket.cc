@@ -10,9 +10,9 @@
 namespace fogline::runtime {
 namespace {
 
-// Largest number of packets that Receive() reads in search of a message. So a flood of packets that
-// are not messages does not hold up Wait() beyond its time limit. Such packets come only without a
-// filter.
+// The largest number of packets that Receive() reads until it finds a message. So a flood of other
+// packets does not keep Wait() busy beyond its time limit. Other packets come only if the socket
+// has no filter.
 constexpr int kMostOthers = 100;
 
 std::optional<MessageSocket::Message> MessageIn(Bytes packet) {
@@ -56,8 +56,8 @@ bool MessageSocket::Receive() {
   return false;
 }
 
-/// @return the next packet, or an empty one if the packet is too large; nullopt if there is no
-/// packet
+/// @return the next packet, or an empty packet if the packet is too large; nullopt if there is no
+///     packet
 std::optional<Bytes> MessageSocket::NextPacket() {
   if (backlog_) {
     auto packet = backlog_->Take();
@@ -65,7 +65,7 @@ std::optional<Bytes> MessageSocket::NextPacket() {
     kept_ = std::move(*packet);
     return kept_;
   }
-  // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
+  // With MSG_TRUNC, recv() returns the size of the whole packet, even if the buffer is too small.
   const ssize_t size = recv(socket(), buffer_.data(), buffer_.size(), MSG_TRUNC);
   // There is no packet, or recv() has reported an error of the network. recv() reports such an
   // error only once, so the next call can succeed.
