@@ -1,5 +1,5 @@
-// Compares this build with the build of another commit. It uses only the command line of `fogline`,
-// because both builds have the same command line.
+// Compares this build with the build of another commit. The comparison uses only the command line
+// of `fogline`, because both builds have the same command line.
 #include <nlohmann/json.hpp>
 
 #include "tools/benchmarks/comparisons.h"
@@ -26,8 +26,9 @@ double RowsPerSecond(const Tree& tree, int rows) {
   return rows / nlohmann::json::parse(result.out)["wall_s"].get<double>();
 }
 
-/// Microseconds per step of a run with nine processes. The result is the difference between a long
-/// and a short run, because both include the same cost of starting processes.
+/// Microseconds per step of a run with nine processes. The times of a long and of a short run
+/// include the same cost of starting processes. So the difference of these times is the time for
+/// `steps` steps without this cost.
 double MicrosecondsPerStep(const Tree& tree, int steps) {
   constexpr int kShort = 100;
   const std::filesystem::path log = ScratchFolder() / "against.lcm";

@@ -1,5 +1,5 @@
-// fogline-bench: measures Fogline and its references in one run on this machine.
-// (Another program, fogline-bench-steps, measures the cost of a single Step.)
+// fogline-bench: measures Fogline, and the programs that it is compared with, in one run on this
+// machine. (Another program, fogline-bench-steps, measures the cost of a single Step.)
 #include <algorithm>
 #include <cstdio>
 #include <exception>

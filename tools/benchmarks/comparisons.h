@@ -21,7 +21,7 @@ std::vector<Comparison> PeerComparisons(Effort effort);
 std::vector<Comparison> DataComparisons(Effort effort);
 
 /// This build compared with the build of another commit.
-/// @param folder the other commit's sources in folder/source, its build in folder/build
+/// @param folder the sources of the other commit are in folder/source, its build is in folder/build
 std::vector<Comparison> AgainstComparisons(Effort effort, const std::filesystem::path& folder);
 
 }  // namespace fogline::benchmarks

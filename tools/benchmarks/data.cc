@@ -45,7 +45,7 @@ double SweepPeakMemory_mb(int rows) {
 }
 
 /// The log of a run with a million messages. The first call makes the log. It also reads the log
-/// once, so that the log is in the page cache for both sides.
+/// once. So the log is in the page cache for both programs that are compared.
 const std::filesystem::path& LargeLog() {
   static const std::filesystem::path file = [] {
     const std::filesystem::path log = ScratchFolder() / "large.lcm";

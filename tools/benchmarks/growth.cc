@@ -23,8 +23,9 @@ struct Cost {
   double memory_mb;
 };
 
-/// The measurement of one quantity that grows. It has the sizes, a function that does the work of a
-/// size, and a function that returns the number of pieces of this work.
+/// Measures how the cost of some work grows with its size, such as the number of following cars.
+/// `work` does the work of one size. `pieces` returns the number of equal pieces of this work, such
+/// as the steps of the run.
 struct Trial {
   Growth growth;
   std::vector<std::int64_t> sizes;

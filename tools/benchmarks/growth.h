@@ -40,7 +40,8 @@ std::string GrowthText(const std::vector<Growth>& all, const Occasion& occasion)
 std::string GrowthMarkdown(const std::vector<Growth>& all, const Occasion& occasion);
 std::string GrowthJson(const std::vector<Growth>& all, const Occasion& occasion);
 
-/// Draws the time for each piece against the size, one plot for each quantity, as an SVG file.
+/// Draws the time for one piece of work (Growth::piece) against the size, with one plot for each
+/// quantity, as an SVG file.
 /// @throws std::runtime_error if gnuplot fails
 void DrawGrowth(const std::vector<Growth>& all, const std::filesystem::path& chart);
 

@@ -3,16 +3,16 @@
 // Which bare LCM processes are a fair reference? A step of Fogline sends nine messages. Five of
 // these messages must follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND,
 // HOST_COMMAND. So a step takes at least as long as one message that goes round a ring of five
-// processes. The goal refers to this ring. The ring is a hard reference, because it sends four
-// messages fewer and wakes five processes instead of nine. On a machine with few cores, waking
-// processes is most of the work. Bare LCM wakes every process for every message on the network,
-// even if the process has not subscribed to the message's channel. Fogline's processes have a
-// filter in the kernel that prevents this.
+// processes. The comparison `udpm` uses the time of this ring as its reference. The ring is a
+// strict reference, because it sends four messages fewer and wakes five processes instead of nine.
+// On a machine with few cores, waking processes is most of the work. Bare LCM wakes every process
+// for every message on the network, even if the process has not subscribed to the message's
+// channel. Fogline's processes have a filter in the kernel that prevents this.
 //
 // Two more references show which work takes the time. The ring of nine hops sends as many messages
 // as a step, but all one after another. The bare graph has the same roles and channels as Fogline,
 // recorder included, but its processes only count steps. The difference between Fogline and this
-// graph is the lockstep's own work (decoding, checking, remembering, computing, logging).
+// graph is the lockstep's own work (decoding, checking, storing, computing, logging).
 //
 // memq has one process and no parallel work. It handles all nine messages one after another. So the
 // cost of LCM in a step is the cost of nine bare hops.
@@ -51,8 +51,9 @@ double RunSeconds(const Options& options, int steps, const Options& launcher = {
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
-/// Microseconds per step. The result is the difference between a long and a short run, because both
-/// include the same cost of the start and the end of a run.
+/// Microseconds per step: the additional time of a long run, compared with a short run, divided by
+/// the number of additional steps. Both runs include the same cost of the start and the end of a
+/// run, so the result does not contain this cost.
 double LockstepStepMicros(const Options& options, int steps, const Options& launcher = {}) {
   constexpr int kShort = 500;
   const double more_s =
@@ -96,8 +97,8 @@ Comparison SignedOverUdpm(int steps) {
   return comparison;
 }
 
-/// Steps per second of a run whose driver is a program of its own. @param driver the command of
-/// this program, to which "--lcm-url URL" is added
+/// Steps per second of a run whose driver is a separate program. @param driver the command of this
+/// program, to which "--lcm-url URL" is added
 double StepsPerSecondWith(const std::string& driver, int steps) {
   const std::string url = runtime::FreshMulticastUrl();
   const Options beside{"sh", "-c",
@@ -128,7 +129,7 @@ Comparison DriverInPython(int steps) {
 
 std::vector<Comparison> LockstepComparisons(Effort effort) {
   const int steps = effort == Effort::kFull ? 10'000 : 3'000;
-  constexpr int kMemqFactor = 5;  // memq is at least this much faster, so its runs have more steps
+  constexpr int kMemqFactor = 5;  // memq is faster by this factor or more, so its runs are longer
   const int messages = StepMessages();
   return {
       OverUdpm(steps, "udpm", "ring of 5 bare LCM processes (longest path of a step)",

@@ -62,8 +62,9 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Number of updates of single cars that SUMO makes per second. The result is the difference
-/// between a long and a short run, because both include the same cost of loading.
+/// Number of updates of single cars that SUMO makes per second. A short run and a long run need the
+/// same time for loading. So the additional updates of the long run are divided by its additional
+/// time.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

@@ -19,8 +19,8 @@ struct ProgramResult {
 };
 
 /// Runs a program to its end. A name without a slash is looked up in PATH.
-/// @throws std::runtime_error if the program cannot start, or if its exit code is not 0; then the
-/// text contains the last line of its stderr
+/// @throws std::runtime_error if the program cannot start, ends by a signal, or has an exit code
+/// other than 0. If the program has started, the text contains the last line of its stderr
 ProgramResult RunProgram(const std::vector<std::string>& command);
 
 /// A folder for the files of this process. It is removed when the process ends.

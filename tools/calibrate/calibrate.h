@@ -15,24 +15,25 @@ using SearchProgress = std::function<void(int evaluations, double best)>;
 
 /// Result of a search.
 struct Calibration {
-  std::vector<double> values;  // best values of the free fields so far
+  std::vector<double> values;  // best values of the free fields
   Evaluation best;
-  std::optional<double> objective_at_start;  // empty if the first point permits no run
+  std::optional<double> objective_at_start;  // empty if the scenario cannot run at the first point
   int evaluations = 0;
   bool interrupted = false;
 };
 
-/// Searches for the values with the smallest objective. It starts at the scenario's own values. A
-/// value outside its bounds is moved to the bound. The first part of the search is in the whole
-/// range, and the second part around the best point. The search ends early when the table meets the
-/// target. The result depends only on the problem and on the number of evaluations. The result is
-/// empty if `go_on` returned false before the first evaluation was complete.
+/// Searches for the values with the smallest objective. The search starts at the scenario's own
+/// values; a value outside its bounds is moved to the bound. The first part of the search covers
+/// the whole range, and the second part only the neighbourhood of the best point. The search ends
+/// early when the table meets the target. The result depends only on the problem and on the number
+/// of evaluations. The result is empty if `go_on` returned false before the first evaluation was
+/// complete.
 /// @param max_evaluations at least 1
 /// @throws InputError if the scenario cannot run at any evaluated point
 std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluations,
                                      const GoOn& go_on, const SearchProgress& progress);
 
-/// Change of a row of the table, in points, when a field changes by 1 % of its range.
+/// Change of a row of the table, in percentage points, when a field changes by 1 % of its range.
 struct Change {
   std::optional<double> si_pct;
   std::optional<double> rhe_pct;

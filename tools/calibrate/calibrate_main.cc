@@ -1,5 +1,7 @@
-// fogline calibrate, a program of its own. It finds the values of fields with which a scenario's
-// table is nearest to a target table, or several sets of values that all meet the target table.
+// The program of the verb `fogline calibrate`. The table of a scenario has SI (safety improvement)
+// and RHE (redundant human engagement) for each threshold. The program finds the values of chosen
+// fields (--free) with which this table is nearest to a target table. With --ensemble it finds
+// several sets of values with which the table is near enough to the target table (--within).
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -193,7 +195,8 @@ std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
   RequireWritable(arguments.out, "--out");
-  // stdout and pipes have no folder, so relative paths then start from the current folder.
+  // stdout and pipes have no folder. For them, relative paths in the text start from the current
+  // folder.
   const std::filesystem::path folder = IsReplaceable(arguments.out)
                                            ? std::filesystem::absolute(arguments.out).parent_path()
                                            : std::filesystem::current_path();
@@ -314,7 +317,8 @@ int RunEnsemble(const CalibrateArguments& arguments) {
   const EnsembleFolder folder(arguments.out, arguments.force);
   const std::string text =
       TextIn(std::filesystem::absolute(arguments.out), arguments, searched.problem().scenario);
-  ParseScenario(WithOrigin(report, 0, text), SetFileName(0));  // throws before the long search
+  // Finds mistakes in the scenario's text before the long search, not after it.
+  ParseScenario(WithOrigin(report, 0, text), SetFileName(0));
   WatchInterrupts();
   report.found = SearchEnsemble(searched, fresh, rules);
   if (arguments.json) {

@@ -10,15 +10,17 @@
 
 namespace fogline::calibrate {
 
-/// A number or integer that is not in a list, with its bounds and its scale. A search gives a value
-/// as its share of the range, in [0, 1]. On a logarithmic scale, equal differences of the share are
-/// equal factors of the value.
+/// A number field or integer field of a scenario that is not in a list, with its bounds and its
+/// scale. A search gives a value as its share of the range, in [0, 1]. On a logarithmic scale,
+/// equal steps of the share multiply the value by equal factors.
 class FreeField {
  public:
-  /// "/pointer=lowest:highest", or "/pointer=lowest:highest:log" for a field that spans orders of
-  /// magnitude.
-  /// @throws InputError if the pointer names no number or integer, if the bounds are not in
-  /// ascending order, or if they are outside the field's own range
+  /// @param text "/pointer=lowest:highest", or "/pointer=lowest:highest:log" for a field that spans
+  /// orders of magnitude
+  /// @throws InputError if the text has another form; if the pointer names no number or integer
+  /// field, or names the seed or the threshold; if the bounds are not in ascending order, are
+  /// outside the field's own range, are not integers although the field is an integer, or are not
+  /// above 0 on a logarithmic scale
   explicit FreeField(const std::string& text);
 
   const std::string& pointer() const { return assignment_.pointer(); }
@@ -30,8 +32,8 @@ class FreeField {
 
   /// The rounded value at a share of the range. An integer is rounded to an integer. A number on a
   /// linear scale is rounded to 1e-5 of the range or finer. A number on a logarithmic scale is
-  /// rounded to six digits. So a file has a short text for the value, and this text is exactly the
-  /// evaluated value.
+  /// rounded to six digits. So the text of the value in a file is short, and is exactly the value
+  /// that was evaluated.
   double ValueAt(double share) const;
   /// The share of the range that belongs to a value; 0 or 1 if the value is outside the bounds.
   double ShareOf(double value) const;

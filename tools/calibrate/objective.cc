@@ -22,8 +22,9 @@ constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }
 
-/// Squared residual of a measure, as a mean over the seeds. Seeds with the measure count with the
-/// squared residual of their mean. The other seeds count with the square of kMissingResidualPts.
+/// Mean over the seeds of the squared residual of a measure. Seeds whose runs have a value of the
+/// measure all have the same residual: the mean of these values, minus the target. A seed without a
+/// value has the residual kMissingResidualPts. The result is 0 without a target.
 double Residual(const stats::Statistics& reached, const std::optional<double>& target,
                 std::int64_t seeds) {
   if (!target) return 0;

@@ -60,9 +60,10 @@ using GoOn = std::function<bool()>;
 ///
 /// in square points. SI* and RHE* are the target's values; w_s and w_r are spread_weight and
 /// rhe_weight of the problem. Every evaluation uses the same seeds (common random numbers), so J
-/// changes only with the fields. A seed without SI counts with a residual of 1000 points, the
-/// largest magnitude of a published SI. So values of fields that prevent all compromised safety do
-/// not make J small.
+/// changes only with the fields. A seed may have no SI, for example because its run without traded
+/// control has no compromised safety in fog. The residual of such a seed is 1000 points, the
+/// largest magnitude that a published SI may have. So J is large if the values of the fields
+/// prevent all compromised safety.
 class Objective {
  public:
   /// @throws InputError if the scenario's policy does not use the threshold, or if a free field is

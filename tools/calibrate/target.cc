@@ -26,8 +26,9 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Reads a number of a target row into `field`. `field` belongs to a published row of a scenario,
-/// because both kinds of rows have the same fields and ranges. A missing number becomes NaN.
+/// Reads a number of a target row into `field`. `field` is a field of a PublishedRow, because
+/// target rows have the same fields and ranges as the published rows of a scenario. A missing
+/// number becomes NaN.
 void ReadField(const JsonObject& object, const Field& field, DiagnosticList& diagnostics) {
   const auto& [value, spec] = *field.As<NumberField>();
   *value = std::nan("");
@@ -82,8 +83,8 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& diagnosti
   return target;
 }
 
-/// Throws all diagnostics as one error. Each has its position in the file, but no hint about the
-/// fields of scenarios, because the file is no scenario.
+/// Throws all diagnostics as one error. Each diagnostic has its position in the file, but no hint
+/// about the fields of scenarios, because the file is no scenario.
 [[noreturn]] void Throw(DiagnosticList& diagnostics, const std::vector<Source>& sources) {
   std::string text;
   try {

@@ -16,9 +16,10 @@ struct TargetRow {
   std::optional<double> rhe_pct;
 };
 
-/// The rows of {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}. `fogline table
-/// --json` prints the same form. Other keys are ignored. null marks a missing number.
-/// @throws InputError with every mistake and its position in the file
+/// Reads the rows of a target file. The file has the form that `fogline table --json` prints:
+/// {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}. Other keys are ignored. null
+/// marks a missing number.
+/// @throws InputError; its text has every mistake, with its position in the file
 std::vector<TargetRow> ReadTarget(const std::filesystem::path& file);
 
 /// The published rows of a scenario.

@@ -64,7 +64,7 @@ class ScenarioArguments {
   }
 
  private:
-  /// The text of --seed. @throws InputError if it is no seed
+  /// The text of --seed. @throws InputError if the text is not a seed
   const std::string& CheckedSeed() const;
 
   std::filesystem::path file_;
@@ -112,8 +112,8 @@ void PrintBeside(const std::filesystem::path& document, std::string_view text);
 /// A build as 16 hexadecimal digits; null for an unknown build.
 nlohmann::ordered_json BuildJson(runtime::BuildId build);
 
-/// The network of a verb that observes other processes, or sends messages to them. Every program
-/// finds its network by the same rule (lcm_url.h).
+/// The URL of the network of a verb that observes other processes, or sends messages to them. Every
+/// program finds its network by the same rule (lcm_url.h).
 /// @param given the URL from --lcm-url; "" without --lcm-url
 /// @throws InputError if the URL is wrong, or no other process can reach the network (memq)
 std::string CheckedNetworkUrl(const std::string& given);
@@ -124,7 +124,7 @@ class NetworkArguments {
   /// @param what the words that follow "LCM network" in the help text, such as "to examine"
   NetworkArguments(CLI::App& verb, std::string_view what);
 
-  /// The network to observe. @throws InputError as CheckedNetworkUrl()
+  /// The URL of the network to observe. @throws InputError as CheckedNetworkUrl()
   std::string Url() const { return CheckedNetworkUrl(url_); }
   /// Whether the verb should follow announced runs: true if the command line names no network.
   bool Follows() const { return url_.empty(); }

@@ -14,8 +14,9 @@ constexpr std::size_t kOptionColumns = 34;  // width of the column with the name
 }  // namespace
 
 CLI::Validator NumberIn(double least, double most) {
-  // CLI::Range has the same texts for whole numbers. For real numbers, the texts of CLI::Range have
-  // six decimals or three hundred digits, and CLI::Range accepts NaN.
+  // This function replaces CLI::Range for real numbers. CLI::Range accepts NaN, and writes a limit
+  // with six decimals or three hundred digits. The texts here have the same form as the texts of
+  // CLI::Range for whole numbers.
   const auto check = [least, most](const std::string& text) -> std::string {
     double value = 0;
     const bool is_number = CLI::detail::lexical_cast(text, value);

@@ -26,7 +26,8 @@ void AddOwnPrograms(CLI::App& app, Action&) {
 void BecomeOwnProgram(int argc, char** argv) {
   if (argc < 2) return;
   const bool help = argc == 3 && std::string_view(argv[1]) == "help";
-  // With argc > 3, at least one word comes after the verb, so the cursor is not at the verb.
+  // After kComplete come the words up to the cursor, and the last word is to be completed. With
+  // argc > 3 the last word is not the verb. So the program of the verb completes it.
   const bool completes = argc > 3 && std::string_view(argv[1]) == kComplete;
   const std::string verb = argv[help || completes ? 2 : 1];
   const auto is_verb = [&](const OwnProgram& program) { return program.verb == verb; };

@@ -26,13 +26,14 @@ inline constexpr OwnProgram kExperiment{"experiment", "fogline-experiment",
 inline constexpr OwnProgram kView{"view", "fogline-web", "Show a run or a log in a browser"};
 inline constexpr std::array kOwnPrograms{kCalibrate, kStudy, kExperiment, kView};
 
-/// Adds these verbs to the list of verbs, for the help text and for spelling hints. They get no
-/// action.
+/// Adds the verbs of kOwnPrograms to the list of verbs, for the help text and for spelling hints.
+/// These verbs get no action, because BecomeOwnProgram() starts their programs.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
-/// Replaces this process by the program of the verb argv[1], or argv[2] after "help". The function
-/// returns if this verb has no program of its own. If the program cannot be started, the function
-/// prints an error on stderr and ends the process with kRunFailed.
+/// Replaces this process by the program of a verb. The verb is argv[1], or argv[2] if argv[1] is
+/// "help" or "--complete". The function returns if this verb has no program of its own. If the
+/// program cannot be started, the function prints an error on stderr and ends the process with
+/// kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
 }  // namespace fogline::cli

@@ -167,11 +167,12 @@ std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& wor
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<const CLI::App*> commands = CommandsOf(app);
   const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
-  // A command may lack an argument because the argument's word was taken for an option, or stands
-  // before the command's name.
+  // In these cases a wrong word may be the real mistake. For example, a command lacks an argument
+  // because the argument's word was taken for an option, or stands before the command's name.
   const bool may_misfit = commands.size() == 1 || code == CLI::ExitCodes::ExtrasError ||
                           code == CLI::ExitCodes::RequiredError;
-  // The first wrong word belongs to the first command that has wrong words.
+  // The error is about the first wrong word. remaining() has the words that a command does not
+  // accept, so the first wrong word belongs to the first command with such words.
   const auto misfit = std::ranges::find_if(
       commands, [](const CLI::App* command) { return !command->remaining().empty(); });
   std::string what = OneLine(runtime::WhatIsWrong(error));

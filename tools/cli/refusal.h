@@ -20,7 +20,7 @@ std::string UnknownVerb(const CLI::App& app);
 /// verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& command, const std::string& word);
 
-/// Makes the verbs of `app`, and their actions, refuse values that they would ignore:
+/// Makes the verbs of `app`, and their actions, refuse values that they would otherwise ignore:
 /// - an empty text for an option or argument. It often comes from a shell variable that is not set,
 ///   as in --log "$UNSET".
 /// - a value for a flag, as in --force=no.

@@ -22,7 +22,7 @@ std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
 
 /// How the runs of a table are made.
 struct TableRuns {
-  runner::RunOptions options;  // of each run, without its log
+  runner::RunOptions options;  // of each run, except its log
   std::filesystem::path logs;  // folder for a log of each run; empty: no logs
   std::string name;            // beginning of the name of each log
   int jobs = 1;                // number of runs at the same time

@@ -38,7 +38,8 @@ std::string RefuseRecorder(const std::string& role) {
                                          : "";
 }
 
-/// The transport of a run and its source, for an error message.
+/// The option or variable that chose the transport of a run, and the transport, for an error
+/// message.
 std::string Said(const runner::RunOptions& options) {
   return options.transport_source + " " + options.transport;
 }

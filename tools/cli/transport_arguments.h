@@ -18,9 +18,10 @@ namespace fogline::cli {
 /// and the options that start roles on other machines.
 class TransportArguments {
  public:
-  /// @param transport the default transport. If it is direct, but roles are on other machines, the
-  /// default is udpm. If $LCM_DEFAULT_URL is set, this URL is the default instead. But if the
-  /// default is direct, and no role is external, $LCM_DEFAULT_URL is ignored.
+  /// @param transport the transport of a run if the user chooses none. There are two exceptions:
+  ///     - If `transport` is direct, but roles are on other machines, the run uses udpm.
+  ///     - If $LCM_DEFAULT_URL is set, the run uses this URL. But a run with direct and without
+  ///       external roles ignores $LCM_DEFAULT_URL.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.

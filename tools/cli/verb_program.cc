@@ -51,7 +51,8 @@ int Run(const CLI::App& app, const Action& action) {
     Complain(fmt::format("{}: error: {}", name, error.what()));
     return kCheckFailed;
   } catch (const std::system_error& error) {
-    // fmt::print() throws an error without the name of the file.
+    // An error of fmt::print() does not say which file cannot be written. If this file is stdout,
+    // kNoStdout says so.
     Complain(fmt::format("{}: error: {}", name, std::ferror(stdout) ? kNoStdout : error.what()));
     return kRunFailed;
   } catch (const std::exception& error) {
@@ -96,7 +97,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
     Complain(Refusal(app, error));
     return kBadInput;
   }
-  if (!action) {  // without a verb: print the help, exit code 0, as in cargo
+  if (!action) {  // without a verb: print the help, exit code 0, as Rust's cargo does
     action = [&app] {
       fmt::print("{}", HelpText(app, app));
       return kDone;

@@ -27,8 +27,8 @@ class Differences {
   double mean() const { return ours_ / Count(); }
   double recorded_mean() const { return recorded_ / Count(); }
   double rmse() const { return std::sqrt(squares_ / Count()); }
-  /// Standard deviation of the differences. It leaves out the mean difference, which depends on the
-  /// chosen time gap.
+  /// Standard deviation of the differences. Unlike rmse(), it does not contain the mean difference,
+  /// because the mean difference depends on the time gap that is set for the host.
   double spread() const {
     const double bias = mean() - recorded_mean();
     return std::sqrt(std::max(0.0, squares_ / Count() - bias * bias));

@@ -1,4 +1,4 @@
-// A real car that was recorded behind a leader, from a CSV file.
+// Reads a CSV file with the recording of a real car behind a leader, and checks the recording.
 #pragma once
 
 #include <filesystem>

@@ -23,7 +23,7 @@ struct Finding {
   Level level = Level::kOk;
   std::string what;
   std::string remedy;           // "" if no remedy is needed
-  std::vector<Recipe> recipes;  // alternatives that make the remedy permanent
+  std::vector<Recipe> recipes;  // shell commands for the remedy; a title says the purpose of each
 };
 using Findings = std::vector<Finding>;
 

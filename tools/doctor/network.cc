@@ -126,8 +126,8 @@ std::vector<double> RoundTripsUs(const std::string& url) {
   return times_us;
 }
 
-/// Examines whether this machine receives its own multicast messages. It sends real LCM messages to
-/// the group and port of the URL, because a firewall may pass only this port.
+/// Examines whether this machine receives its own multicast messages. The function sends real LCM
+/// messages to the group and port of the URL, because a firewall may pass only this port.
 void ExamineLoopback(const runtime::MulticastAddress& address, Findings& findings) {
   const std::string& group = address.group;
   const std::uint16_t port = address.port;
@@ -135,7 +135,7 @@ void ExamineLoopback(const runtime::MulticastAddress& address, Findings& finding
   std::vector<double> times_us;
   try {
     times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
-  } catch (const runtime::NetworkClosed&) {  // times_us is empty, so the finding follows
+  } catch (const runtime::NetworkClosed&) {  // times_us is empty: the code below reports this
   } catch (const InputError& error) {
     std::string_view why = error.what();
     constexpr std::string_view kPrefix = "error: ";
@@ -238,7 +238,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const runtime::MulticastAddress address = runtime::MulticastAddressOf(url);
   if (ExamineGroup(url, address.group, findings)) {
-    // mpudpm needs the route for every value of the ttl.
+    // udpm needs no route if ttl=0. mpudpm needs a route for every value of the ttl.
     const bool here = address.ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, address.group, findings)
              : ExamineRoute(address.group, address.ttl, findings)) {

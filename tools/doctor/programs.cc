@@ -30,7 +30,7 @@ std::string HowToGetPrograms() {
 }
 
 /// What to do if the message types for lcm-spy are missing. CMake builds them only if it has found
-/// a JDK, so it must look again.
+/// a JDK. So CMake must run again after a JDK is installed.
 std::string HowToGetTypes() {
   const std::string build = processes::BuildFolder();
   return "apt-get install default-jdk; " +

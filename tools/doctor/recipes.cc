@@ -12,9 +12,10 @@
 namespace fogline::doctor {
 namespace {
 
-/// Shell lines that add the route with systemd-networkd, which reads one file for each interface.
-/// For lo, the lines write this file. For any other interface, whose file has the name FILE, the
-/// lines add the route in a further file, in the folder /etc/systemd/network/FILE.d.
+/// Shell lines that add a route for LCM's multicast (239.0.0.0/8) with systemd-networkd.
+/// systemd-networkd reads one file for each interface. For the interface lo, the lines write this
+/// file. Every other interface already has its file, here called FILE. For such an interface, the
+/// lines write the route into a further file, in the folder /etc/systemd/network/FILE.d.
 std::string NetworkdScript(const std::string& interface) {
   const std::string route =
       "[Route]\n"
@@ -39,8 +40,8 @@ std::string NetworkdScript(const std::string& interface) {
       interface, route);
 }
 
-/// Shell lines that add the route with ifupdown. For each interface that comes up, ifupdown calls
-/// the scripts of the folder /etc/network/if-up.d.
+/// Shell lines that add a route for LCM's multicast with ifupdown. For each interface that comes
+/// up, ifupdown calls the scripts of the folder /etc/network/if-up.d.
 std::string IfupdownScript(const std::string& interface) {
   return fmt::format(
       "cat >/etc/network/if-up.d/fogline <<'END'\n"
@@ -61,8 +62,8 @@ std::vector<Recipe> RouteRecipes(const std::string& interface) {
 }
 
 std::vector<Recipe> FirewallRecipes(const std::string& group, std::uint16_t port) {
-  // In nftables a packet must pass every chain of its hook, so each chain gets the rules, before
-  // its other rules.
+  // In nftables a packet must pass every chain of its hook, so the lines insert the rules at the
+  // beginning of each chain.
   const std::string insert = fmt::format(
       "nft list chains | awk '\n"
       "  $1 == \"table\" {{ table = $2 \" \" $3; ours = $2 == \"inet\" || $2 == \"ip\" }}\n"
@@ -95,7 +96,8 @@ std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& 
 }
 
 std::string InterfaceToOthers() {
-  // An address that is reserved for documentation (RFC 5737), so only a default route leads to it.
+  // 192.0.2.1 is reserved for documentation (RFC 5737), so only a default route leads to this
+  // address. RouteInterface() gives the interface of this route.
   const std::string usual =
       runtime::RouteInterface(runtime::KernelTable("/proc/net/route"), "192.0.2.1");
   if (!usual.empty() && usual != "lo") return usual;

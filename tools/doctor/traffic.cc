@@ -56,7 +56,7 @@ void ReportWaiting(const runtime::WaitingRoles& waiting, Findings& findings) {
   }
 }
 
-/// Reports machines whose messages arrive here, although ttl=0 in the URL. With ttl=0 no message
+/// Reports machines whose messages arrive here, although the URL has ttl=0. With ttl=0 no message
 /// leaves this machine, so the other machines do not hear this machine.
 void ExamineReach(const std::string& url, const watch::TrafficView& view,
                   const runtime::WaitingRoles& waiting, Findings& findings) {

@@ -84,7 +84,8 @@ class Conversation {
     own_.version = runtime::VersionText();
     own_.type_fingerprint = TypeFingerprint();
     own_.waiting_for = host_;
-    // A random number, so that no other doctor has this number, even on a machine of the same name.
+    // The instance is random, so that no other doctor has the same instance, even on a machine of
+    // the same name.
     std::random_device random;
     own_.instance = static_cast<std::int64_t>(random()) << 31 | random() >> 1;
     bus_.Subscribe(kChannel, [this](runtime::Bytes bytes) { Hear(bytes); });
@@ -126,8 +127,8 @@ class Conversation {
     own_.num_inputs = 1;
   }
 
-  /// Whether another doctor awaits this machine. The name comes from the network, and resolving a
-  /// name takes time, so only few names are resolved.
+  /// Whether `name`, the machine for which another doctor waits, is this machine. The name comes
+  /// from the network, and resolving a name takes time, so only few names are resolved.
   bool MeansUs(const std::string& name) {
     constexpr std::size_t kMostNames = 8;
     const auto known = is_us_.find(name);

@@ -18,11 +18,11 @@ enum class PedalKey : std::uint8_t { kThrottle, kBrake };
 ///
 /// A terminal reports only characters, and does not report that a key goes up. The first character
 /// comes when the key goes down. Further characters come while the key stays down; the second one
-/// comes after a longer delay. So each character counts as a key that is down for kPress. The pedal
-/// moves back only when no further character can be expected: kFirstDelay after a first character,
-/// and kPress after a later one. So a tap moves a pedal a little, and the pedal rests there for a
-/// moment. When the person releases the key, the pedal does not move back at once, but a little
-/// later.
+/// comes after a longer delay. So this class treats each character as a key that is down for
+/// kPress. The pedal moves back only when no further character can be expected: kFirstDelay after a
+/// first character, and kPress after a later one. So a tap moves a pedal a little, and the pedal
+/// rests there for a moment. When the person releases the key, the pedal does not move back at
+/// once, but a little later.
 class KeyPedals {
  public:
   /// After a character has come, its key counts as down for this time. Characters of a key that is

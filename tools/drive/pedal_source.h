@@ -16,7 +16,7 @@ struct PedalState {
   double throttle = 0;  // in [0, 1]
   double brake = 0;
   std::vector<double> axes;  // raw values in [-1, 1]
-  std::int32_t buttons = 0;  // as in driver_input_t
+  std::int32_t buttons = 0;  // bits of driver_input_t
   TimePoint at{};            // the time of the newest input of the device
 
   /// Whether all members except `at` are equal.
@@ -32,8 +32,8 @@ class PedalSource {
   PedalSource(const PedalSource&) = delete;
   PedalSource& operator=(const PedalSource&) = delete;
 
-  /// Reads the inputs that have come from the device, without waiting. Returns the state after
-  /// them.
+  /// Reads, without waiting, all inputs that have come from the device. Returns the state after
+  /// these inputs.
   virtual PedalState Read(TimePoint now) = 0;
   /// A file descriptor that is readable when the device has new inputs; -1 if the device is not
   /// open.

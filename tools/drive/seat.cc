@@ -18,9 +18,9 @@
 namespace fogline::drive {
 namespace {
 
-// The longest time that the thread waits for its device or for a message. In this time, a pedal
-// that is controlled by a key moves by at most a fifth of its travel, because key_press_ps is at
-// most 20 per second.
+// The longest time that the thread waits for its device. The thread reads the messages of the run
+// after this wait, so a message waits at most this long. In this time, a pedal that is controlled
+// by a key moves by at most a fifth of its travel, because key_press_ps is at most 20 per second.
 constexpr Duration kTick = milliseconds(10);
 // The real-time priority of the thread. The roles other than the world have the same priority. On a
 // busy machine a thread without this priority may be silent for so long that the person counts as
@@ -106,7 +106,8 @@ Seat::~Seat() {
 
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
-  RunThreadBeforeOthers(kPriority);  // if the kernel refuses, the runner reports this for its roles
+  // If the kernel refuses, this thread prints nothing: the runner prints the refusal for its roles.
+  RunThreadBeforeOthers(kPriority);
   // --faults does not apply to the messages of a seat, because a seat is not a part of the run. The
   // seat signs its messages as the runner, because the runner is the sender of DRIVER_INPUT in
   // services/graph.h.

@@ -14,8 +14,8 @@
 namespace fogline::drive {
 
 /// Makes the messages of a seat. A message is due at each change of the state, and at least every
-/// 40 ms. At most 200 messages a second are due. Both values keep a margin of a fifth from the
-/// limits of services/runtime/wire/driver_input.h.
+/// 40 ms. At most 200 messages a second are due. The interval and the rate are each a fifth below
+/// their limits in services/runtime/wire/driver_input.h.
 class InputMaker {
  public:
   static constexpr Duration kEvery = milliseconds(40);
@@ -40,8 +40,8 @@ class InputMaker {
 /// The beginning of a text: at most `most` bytes, without an incomplete character at its end.
 std::string FirstBytes(const std::string& text, std::size_t most);
 
-/// A seat: a thread with its own bus. It publishes the inputs of the device, and shows the person
-/// the requests of the car.
+/// A seat: a thread with its own bus. It publishes the inputs of the device. It also prints texts
+/// for the person, such as "take over, please" and "the automation drives".
 class Seat {
  public:
   Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,

@@ -28,7 +28,8 @@ RawTerminal::RawTerminal() {
   }
 }
 
-// If this program is in the background, tcsetattr() stops it by SIGTTOU. So the signal is blocked.
+// If this program is in the background, tcsetattr() causes the signal SIGTTOU, which stops the
+// program. So the destructor blocks this signal.
 RawTerminal::~RawTerminal() {
   sigset_t blocked;
   sigset_t mask;

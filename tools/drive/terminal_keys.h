@@ -12,9 +12,9 @@ namespace fogline::drive {
 
 enum class TerminalKey : std::uint8_t { kThrottle, kBrake, kTakeOver, kGiveBack };
 
-/// Finds keys in the characters of a terminal: the arrows up and down (each of them has two usual
-/// sequences, such as ESC [ A and ESC O A for up), space and t (take over), g (give back). Other
-/// characters are ignored.
+/// Finds keys in the characters of a terminal: the arrow keys up and down, space and t (take over),
+/// and g (give back). Each arrow key has two usual sequences, such as ESC [ A and ESC O A for up.
+/// Other characters are ignored.
 class KeyParser {
  public:
   /// Calls `use(TerminalKey)` for each key. A sequence may be split between two calls.
@@ -63,7 +63,7 @@ class RawTerminal {
 
 class TerminalKeys final : public PedalSource {
  public:
-  /// After its character has come, a button counts as down for this time, because a terminal does
+  /// A button counts as down for this time after its character has come, because a terminal does
   /// not report that a key goes up. If a step of the run is not longer than this time, the button
   /// is down in the driver's newest input in at least one step.
   static constexpr Duration kButton = milliseconds(300);

@@ -18,7 +18,7 @@ namespace fogline::exports {
 namespace {
 
 constexpr std::string_view kScenarioFile = "scenario.json";
-// Text is written in pieces of about this size, so that it needs little memory.
+// The text is written in pieces of about this size, to save memory.
 constexpr std::size_t kPieceBytes = 1 << 16;
 
 std::filesystem::path FileOf(std::string_view channel, const std::filesystem::path& folder) {
@@ -73,8 +73,8 @@ bool BeginsWith(const std::filesystem::path& file, std::string_view text) {
   return in.gcount() == std::ssize(text) && head == text;
 }
 
-/// Whether an export of a channel may replace `file`: a pipe, a device, or an older export. An
-/// export begins with the columns of the messages' header.
+/// Whether an export of a channel may replace `file`. This is true for a pipe, a device, and an
+/// older export. An export begins with the columns of the messages' header.
 bool IsChannel(const std::filesystem::path& file) {
   std::error_code ignored;
   return !IsReplaceable(file) || (std::filesystem::is_regular_file(file, ignored) &&
@@ -94,8 +94,8 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 
 bool IsCsvExport(const std::filesystem::path& file) {
   if (file.filename() != kScenarioFile) return IsChannel(file);
-  // Scenarios that are not exports may begin with the same text. So the files beside scenario.json
-  // must be exports, too.
+  // A scenario that is not part of an export may begin with this text, too. So the files beside
+  // scenario.json must also be exports.
   if (!BeginsWith(file, "{\n  \"version\": ")) return false;
   const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
   return std::all_of(files.begin(), files.end() - 1, IsChannel);

@@ -30,12 +30,12 @@ constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
 // MAT-files have sizes of 32 bits, and readers interpret these sizes as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kHeaderStruct = "header";
-// Name of a field that only a channel with missing messages has: 1 for a message, 0 for a gap.
+// Name of a field that a channel has only if messages are missing: 1 for a message, 0 for a gap.
 constexpr const char* kHeard = "heard";
 
 using Variable = Matio::Variable;
 
-/// matio's two names for one type of numbers.
+/// matio's two constants for one type of numbers.
 struct MatType {
   matio_classes class_type;
   matio_types data_type;
@@ -115,9 +115,10 @@ std::size_t BytesOf(const ChannelTable& table) {
   return bytes;
 }
 
-/// Throws the reason why matio could not write the tables. matio does not report the reason. So
-/// this function writes as many bytes to the same file. This write fails for the same reason, and
-/// its exception has the reason. If it does not fail, the exception has no reason.
+/// Throws an exception with the reason why matio could not write the tables. matio does not report
+/// the reason. So this function writes zeros to the same file, about as many bytes as the tables
+/// need. This write fails for the same reason, such as a full disk, and its exception states the
+/// reason. If this write succeeds, the exception states no reason.
 /// @throws std::runtime_error
 [[noreturn]] void Fail(const RunTables& tables, const std::filesystem::path& path,
                        AtomicFile& file) {

@@ -7,7 +7,7 @@
 
 namespace fogline::exports {
 
-/// Whether WriteMat() has written the file, judged by its beginning.
+/// Whether WriteMat() has written the file. Only the beginning of the file is checked.
 bool IsMatExport(const std::filesystem::path& file);
 
 /// Writes the complete file or nothing. Each channel is one struct, such as TRUTH, with one column

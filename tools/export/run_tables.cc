@@ -64,7 +64,8 @@ class Tabulator {
 
   /// Adds a row for a message that the log lacks. SetTimesOfGaps() sets the time of this row.
   void AddGap(std::int64_t run_id, std::int64_t step) {
-    // The width of a list is not known before the first message.
+    // The width of a list is not known before the first message. So a gap before this message is
+    // stored in early_gaps_, and BeginTable() adds its row.
     if (table_.fields.empty()) {
       early_gaps_.emplace_back(run_id, step);
     } else {

@@ -49,9 +49,9 @@ struct RunTables {
 };
 
 /// Reads a whole log into memory: 0.8 kB for each step with one following car. If the options
-/// permit gaps and the run is in lockstep, every channel has a row for each step from the first
-/// step to the last step of which the log has a message. A message that is missing in one of these
-/// steps has a row, too.
+/// permit gaps and the run is in lockstep, every channel has a row for each step from the first to
+/// the last step that has a message in the log. A message that is missing in one of these steps has
+/// a row, too.
 /// @throws InputError if the file is not a log, or has messages that do not fit their channel;
 /// Interrupted
 RunTables ReadRunTables(const std::filesystem::path& log, const log::ReadOptions& options = {});

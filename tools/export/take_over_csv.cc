@@ -40,7 +40,8 @@ void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text)
   text += '\n';
 }
 
-/// Appends one line that stands for all requests of the run that `take_overs` may lack.
+/// Appends one line for a run whose log lacks messages. For this reason `take_overs` may lack
+/// requests. The line stands for all of them.
 void AppendUnknown(const TakeOverRun& run, std::string& text) {
   const std::string columns = RequestColumns();
   const auto others = std::ranges::count(columns, ',') - std::ranges::count(kKeys, ',') + 1;

@@ -23,15 +23,16 @@ struct TakeOverRun {
   std::optional<log::InputLatency> input_latency;
 };
 
-/// Whether WriteTakeOverCsv() could have written the file, judged by its beginning.
+/// Whether WriteTakeOverCsv() could have written the file. Only the beginning of the file is
+/// checked.
 bool IsTakeOverCsv(const std::filesystem::path& file);
 
 /// Writes a header line, and a line for each request. If a run may have more requests
-/// (TakeOverRun::unknown), one line has the outcome "unknown", and neither a number nor measures.
-/// The columns are log, seed, request (from 1 on in each log), outcome, the measures of
-/// VisitTakeOver(), and the input latency of the run. A value that does not exist is empty. Numbers
-/// have enough digits to restore every bit. A name with a comma, a quote or a line end is in quotes
-/// (RFC 4180).
+/// (TakeOverRun::unknown), there is one more line for the run. This line has the outcome "unknown",
+/// and neither a number nor measures. The columns are log, seed, request (from 1 on in each log),
+/// outcome, the measures of VisitTakeOver(), and the input latency of the run. A value that does
+/// not exist is empty. Numbers have enough digits to restore every bit. A name with a comma, a
+/// quote or a line end is in quotes (RFC 4180).
 /// @throws InputError if the file cannot be created; std::runtime_error when the disk is full;
 /// Interrupted
 void WriteTakeOverCsv(std::span<const TakeOverRun> runs, const std::filesystem::path& file);

@@ -1,5 +1,5 @@
 // fogline events: lists the times at which each side drove, the outcome of every request to take
-// over, and every emergency braking. It reads only logs.
+// over, and every emergency braking. The verb reads only logs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,8 +87,8 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
-/// The channels among HOST_COMMAND and DRIVER_COMMAND of which the log may lack published messages.
-/// The set is empty for a run in lockstep.
+/// Those of the channels HOST_COMMAND and DRIVER_COMMAND on which the log may lack published
+/// messages. The set is empty for a run in lockstep.
 runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
   runtime::ChannelSet commands;
   commands.set(IndexOf<arbitration_t>()).set(IndexOf<driver_command_t>());
@@ -96,8 +96,8 @@ runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
 }
 
 /// Whether an event may have happened before the step in which it is listed, because commands are
-/// missing. In real time a step may have no command although the log is complete, so the result is
-/// true only if published messages may be missing.
+/// missing. In real time a step of a complete log may have no command. So in real time the result
+/// is true only if the log may lack published messages.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
   return entry.earliest_step != entry.step &&
          (!events.run.realtime || UnloggedCommands(events.run).any());

@@ -37,8 +37,8 @@ struct ExportArguments {
   bool json = false;
 };
 
-/// Whether the file has this extension. Capital letters count as small ones.
-/// @param extension in small letters, such as ".mat"
+/// Whether the file has this extension. Upper and lower case count as equal.
+/// @param extension in lower case, such as ".mat"
 bool HasExtension(const std::filesystem::path& out, std::string_view extension) {
   return std::ranges::equal(out.extension().native(), extension, {},
                             [](unsigned char letter) { return std::tolower(letter); });

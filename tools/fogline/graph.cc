@@ -105,7 +105,8 @@ std::string WithTables(const std::filesystem::path& file) {
   return std::move(page.text);
 }
 
-/// Replaces the tables in all pages, or in none if one of them has no table. @throws InputError
+/// Replaces the tables in all pages. If one page has no table, no page is changed.
+/// @throws InputError
 void PutInto(const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> pages;
   for (const std::filesystem::path& file : files) pages.push_back(WithTables(file));

@@ -157,7 +157,7 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures,
 
 /// The table of SI and RHE, computed only from the logs. It has one row for each run with an SI. A
 /// run has an SI if the logs contain its paired run without traded control, and safety is
-/// compromised there. The result is nullopt if no run has an SI.
+/// compromised in this paired run. The result is nullopt if no run has an SI.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
                                            std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);

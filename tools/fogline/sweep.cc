@@ -173,8 +173,8 @@ int RunSweepVerb(const SweepArguments& arguments) {
     throw Interrupted(fmt::format("interrupted after {}; call it again to go on", RowsText(rows)));
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
-  // A unit consists of the rows that share a paired run without traded control. The rate does not
-  // count the paired runs.
+  // The rate counts only the rows. It does not count the paired runs without traded control, which
+  // the sweep also makes.
   const int cores = std::min(arguments.jobs, sweep::AllCores());
   const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / cores : 0;
   if (arguments.json) {

@@ -80,7 +80,7 @@ constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
 
 watch::Following FollowingOf(const TopArguments& arguments) {
   if (!arguments.network.Follows()) return watch::Following::kNothing;
-  // The output of --once has the traffic of one run, whose network it names.
+  // The output of --once has the traffic of one run, and names the network of this run.
   return arguments.once ? watch::Following::kFirstRun : watch::Following::kNewestRun;
 }
 
@@ -116,7 +116,8 @@ class Top {
   }
 
  private:
-  /// Waits until a run is announced, so that the first interval has all traffic of the run.
+  /// Waits until a run is announced, but no longer than kDiscovery. The first interval of the
+  /// statistics begins after this wait, so it has all traffic of the run.
   void Discover() {
     const TimePoint end = Clock::now() + kDiscovery;
     while (network_.follows() && !network_.followed() && Clock::now() < end &&

@@ -116,8 +116,8 @@ class HostAgent {
     if (!role) throw NotUnderstood("no role: " + name);
     auto arguments = order.at(kArguments).get<std::vector<std::string>>();
     if (key_) arguments.insert(arguments.end(), {"--key", key_->path()});
-    // If the runner has not received the answer to an earlier order, the role may still run. The
-    // earlier process is then killed.
+    // If the answer to an earlier order has not reached the runner, the process of this earlier
+    // order may still run. The agent kills this process.
     if (const auto before = pids_.find(*role); before != pids_.end()) roles_.Kill(before->second);
     try {
       pids_[*role] = roles_.StartRole(*role, arguments);

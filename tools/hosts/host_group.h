@@ -20,8 +20,9 @@ class HostGroup {
   /// ADDRESS:PORT at which the relay of the run must listen; port 0: any free port.
   /// @throws std::runtime_error if the other machines see this machine at different addresses
   std::string RelayPlace() const;
-  /// Gives the key to every machine, and lets it examine its way to the network of the run.
-  /// @param silence time without a message of the runner after which a machine ends its roles
+  /// Gives the key of the run to every machine. Each machine then checks whether it reaches the
+  /// network of the run.
+  /// @param silence a machine ends its roles if no message of the runner comes for this time
   /// @throws std::runtime_error with the name of a machine and its problem; InputError if the key
   ///     cannot be read; Interrupted
   void Check(const std::string& url, const runtime::TrafficOptions& traffic, Duration silence);

@@ -19,10 +19,10 @@ inline constexpr const char* kHow = "how";             //   how it ended
 inline constexpr const char* kKilled = "killed";       //   whether a signal ended it
 inline constexpr const char* kLines = "lines";         //   the last lines that it printed
 
-// Keys of messages from the runner to the machine.
+// Keys of messages from the runner to the machine. "with:" has the same meaning as above.
 inline constexpr const char* kCheck = "check";      // URL of the network to examine; with:
 inline constexpr const char* kKey = "key";          //   the key, as in its file; "": none
-inline constexpr const char* kSilence = "silence";  // limit of time without a message, in s
+inline constexpr const char* kSilence = "silence";  //   longest silence of the runner, in s
 inline constexpr const char* kStart = "start";      // a role to start; with:
 inline constexpr const char* kArguments = "arguments";
 inline constexpr const char* kKill = "kill";  // process id of a role to kill
@@ -32,9 +32,9 @@ inline constexpr const char* kPid = "pid";
 // A sign of life. The machine answers with a list of [process id, context switches].
 inline constexpr const char* kAlive = "alive";
 
-/// The interval between two signs of life of the runner. The runner decides after one or two
-/// seconds without a STATUS whether a process hangs. In this time it must learn the number of
-/// context switches of the process twice.
+/// The interval between two signs of life of the runner. After one or two seconds without a STATUS,
+/// the runner decides whether a process hangs. For this decision it compares two counts of the
+/// context switches of the process. Both counts must arrive within these one or two seconds.
 inline constexpr Duration kAliveEvery = milliseconds(250);
 
 }  // namespace fogline::hosts

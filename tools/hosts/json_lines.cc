@@ -70,7 +70,8 @@ std::optional<std::string> JsonLines::TakeLine() {
     Read();
     end = received_.find('\n');
   }
-  // Wait() has also read bytes, so a line may be too long without a read in this function.
+  // The bytes of a line that is too long may come from Wait(). So the length is checked even if
+  // this function has read nothing.
   if (std::min(end, received_.size()) > kMaxLine) {
     throw NotUnderstood(fmt::format("a line has more than {} bytes", kMaxLine));
   }

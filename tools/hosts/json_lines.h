@@ -27,8 +27,8 @@ class JsonLines {
   /// 4 KiB, which JSON may make six times as long.
   static constexpr std::size_t kMaxLine = std::size_t{1} << 18U;
 
-  /// @param input, output files for reading and writing; they may be the same socket. This class
-  ///     does not close them. It makes writes to `output` non-blocking.
+  /// @param input, output file descriptors for reading and for writing. They may be the same
+  ///     socket. This class does not close them. It makes writes to `output` non-blocking.
   JsonLines(int input, int output);
 
   /// Sends a message, or the part of it for which there is room. The remaining part is sent with

@@ -21,7 +21,7 @@ struct RunOnHost {
   std::string url;
   std::string key;  // text of the key's file; "": messages are not signed
   double silence_s =
-      60;  // the machine ends its roles if it hears nothing of the runner for so long
+      60;  // the machine ends its roles if it hears nothing of the runner for this time
 };
 
 class RemoteHost : public processes::RolePlace {
@@ -33,10 +33,10 @@ class RemoteHost : public processes::RolePlace {
   /// @throws std::runtime_error with the name of the machine if it does not answer until `end`, or
   ///     has another version; Interrupted
   void Greet(TimePoint end);
-  /// Asks the machine to examine the way to the network of the run. Does not wait.
+  /// Asks the machine to check whether it reaches the network of the run. Does not wait.
   void BeginCheck(const RunOnHost& run);
-  /// Waits for the result. @throws std::runtime_error with the problems of that machine;
-  /// Interrupted
+  /// Waits for the result of the check. @throws std::runtime_error with the problems of that
+  /// machine; Interrupted
   void EndCheck(TimePoint end);
   /// The address of the runner's machine, as the other machine sees it; "" if unknown.
   const std::string& own_address() const { return own_address_; }
@@ -56,10 +56,10 @@ class RemoteHost : public processes::RolePlace {
     Role role;
     std::optional<std::int64_t> activity{};
   };
-  /// Sends a sign of life when it is due, and reads what has come.
+  /// Sends a sign of life if it is due, and handles the messages that have come.
   void Look();
-  /// Takes one message.
-  /// @throws NotUnderstood, nlohmann::json::exception if the message is not from host_messages.h
+  /// Handles one message.
+  /// @throws NotUnderstood, nlohmann::json::exception if the message is not one of host_messages.h
   void Take(const nlohmann::json& message);
   void OnStarted(const nlohmann::json& message);
   void OnEnded(const nlohmann::json& message);
@@ -77,7 +77,7 @@ class RemoteHost : public processes::RolePlace {
   std::string version_;  // "" until the machine has answered
   std::string host_;
   std::string own_address_;
-  std::optional<std::string> problems_;  // result of the check; "": none
+  std::optional<std::string> problems_;  // result of the check; "": no problem
   std::map<pid_t, Process> processes_;
   std::map<Role, nlohmann::json> starts_;  // for each role, the answer to its last start order
   std::vector<Exit> exits_;

@@ -133,7 +133,7 @@ std::string WhyNoDestination(std::string_view destination) {
 HostPlan ReadHost(std::string_view text, std::string_view where) {
   HostPlan host;
   const std::size_t colon = std::min(text.find(":/"), text.find(":~/"));
-  // "ssh://HOST" is also a destination of ssh.
+  // In "ssh://HOST", which is also a destination of ssh, the colon does not begin a folder.
   const bool has_folder = colon != std::string_view::npos && text.substr(colon, 3) != "://";
   host.destination = text.substr(0, has_folder ? colon : std::string_view::npos);
   host.name = host.destination;

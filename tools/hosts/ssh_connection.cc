@@ -35,8 +35,8 @@ constexpr int kNoProgram = 127;
 // HowItEnded() can distinguish them from errors of ssh.
 constexpr std::string_view kShell = "--ssh";
 
-/// The options of ssh. With them ssh never asks for a password, and gives up soon if the machine is
-/// silent.
+/// The options of ssh. With these options ssh never asks for a password, and gives up soon if the
+/// machine does not answer.
 const std::vector<std::string> kOptions{"-T", "-o", "BatchMode=yes", "-o", "ConnectTimeout=5",
                                         "--"};
 

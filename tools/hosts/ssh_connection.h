@@ -1,5 +1,6 @@
-// A connection by ssh to `fogline host` on another machine: the program ssh as a child. The
-// destructor ends it. When the connection ends, `fogline host` ends its processes.
+// A connection by ssh to `fogline host` on another machine. The program ssh is a child process of
+// this program. The destructor ends ssh. When the connection ends, `fogline host` ends its
+// processes.
 #pragma once
 
 #include <sys/types.h>
@@ -19,7 +20,8 @@ namespace fogline::hosts {
 class SshConnection {
  public:
   /// Starts ssh. Does not wait for the other machine.
-  /// @param ssh command with its options, for a shell @throws std::runtime_error
+  /// @param ssh the command that starts ssh, with its options; a shell executes this text
+  /// @throws std::runtime_error
   SshConnection(const HostPlan& host, const std::string& ssh);
   ~SshConnection();
   SshConnection(const SshConnection&) = delete;

@@ -36,8 +36,8 @@ namespace {
   dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   if (error_output >= 0) dup2(error_output, STDERR_FILENO);
-  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves these files
-  // open in the program.
+  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 does not know
+  // CLOSE_RANGE_CLOEXEC, and leaves these files open in the program.
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   execv(program, arguments);
   const int error = errno;
@@ -137,7 +137,7 @@ std::string FirstLineOf(int output, Duration limit) {
 }
 
 void EndChild(pid_t pid, Duration limit) {
-  if (pid <= 0) return;  // kill() would signal other processes
+  if (pid <= 0) return;  // kill() would send the signal to other processes
   kill(pid, SIGTERM);
   const TimePoint end = Clock::now() + limit;
   while (waitpid(pid, nullptr, WNOHANG) == 0) {

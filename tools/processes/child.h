@@ -25,8 +25,8 @@ namespace fogline::processes {
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  int output, int error_output = -1, int input = -1);
 
-/// A pipe. A child has none of its ends open, except an end that StartChild() makes its stdin,
-/// stdout or stderr. The destructor closes the ends that are not -1.
+/// A pipe. A child inherits an end only if StartChild() makes this end its stdin, stdout or stderr.
+/// The destructor closes the ends that are not -1.
 struct Pipe {
   /// @throws std::runtime_error
   Pipe();
@@ -38,7 +38,7 @@ struct Pipe {
 };
 
 /// Reads the lines that a child prints, without their line feeds. Lines that have come are kept,
-/// also if Has() returns false.
+/// even if Has() returns false.
 class LineReader {
  public:
   /// @param output the read end of the pipe that is the child's stdout
@@ -62,7 +62,8 @@ class LineReader {
   bool ended_ = false;
 };
 
-/// The first lines that a child prints, without their line feeds; fewer if it ends or is too slow.
+/// The first `count` lines that a child prints, without their line feeds; fewer lines if the child
+/// ends or is too slow.
 /// @param output the read end of the pipe that is the child's stdout
 std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit);
 
@@ -88,7 +89,8 @@ std::string BuildCommand(std::string_view target);
 /// that builds the program. It is "" if the running program is not in a build folder.
 std::string HowToBuild(std::string_view name);
 /// The same as ProgramBeside(), but for a program that not every build has.
-/// @throws std::runtime_error when it is missing. The error names the command that builds it.
+/// @throws std::runtime_error if the program is missing. The error names the command that builds
+///     the program.
 std::filesystem::path BuiltProgramBeside(std::string_view name);
 /// The program of a role in the folder of the running program.
 std::filesystem::path ProgramOf(Role role);

@@ -28,12 +28,13 @@ class ExternalRoles {
   /// role; "" without roles. Several roles share one command, in which ROLE stands for the name of
   /// the role.
   std::string Text(const std::vector<Role>& roles) const;
-  /// Which of these roles have come or gone since the last call, and which are missing; "" if
-  /// nothing has changed, or the run has begun.
+  /// A text that says which of these roles have come or gone since the last call, and which are
+  /// missing; "" if nothing has changed, or the run has begun.
   std::string News(const std::vector<Role>& roles, const runtime::RunCoordinator& coordinator,
                    TimePoint now);
 
-  /// Ends the run after the time limit, with the names of the missing roles.
+  /// If a role is still missing after the time limit, ends the run. The error names the missing
+  /// roles.
   void Check(runtime::RunCoordinator& coordinator, TimePoint now) const;
 
  private:

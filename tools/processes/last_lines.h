@@ -13,8 +13,8 @@ namespace fogline::processes {
 class LastLines {
  public:
   static constexpr std::size_t kKept = 10;
-  /// Limit for the stored bytes of a line. The beginning is stored, because errors begin with their
-  /// cause.
+  /// Limit for the stored bytes of a line. Only the beginning of a longer line is stored, because
+  /// errors begin with their cause.
   static constexpr std::size_t kMaxBytes = 4096;
 
   /// Adds output, in pieces of any size.

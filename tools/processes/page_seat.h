@@ -1,5 +1,5 @@
-// The page on which a person drives (`fogline drive`). A child process shows it: fogline-web with a
-// seat. The destructor ends the child.
+// The page on which a person drives (`fogline drive`). A child process shows the page: fogline-web
+// with a seat. The destructor ends the child.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ class PageSeat {
  public:
   /// Starts fogline-web for this run on this network. Returns when the page can be opened.
   /// @param more arguments of fogline-web, such as --listen ADDRESS
-  /// @throws std::runtime_error if fogline-web cannot show the page; Interrupted
+  /// @throws std::runtime_error if fogline-web cannot show the page; Interrupted if the user
+  ///     interrupts this program
   PageSeat(std::int64_t run_id, const std::string& url, const runtime::TrafficOptions& traffic,
            const std::vector<std::string>& more);
 

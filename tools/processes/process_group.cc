@@ -71,8 +71,8 @@ std::string ProcessGroup::Describe() const {
 }
 
 void ProcessGroup::Kill(pid_t pid) {
-  // Kills only a process of this group. The system may have given the id of a collected process to
-  // another process.
+  // Kills only a process that is still in this group. After Collect() has removed a process, the
+  // system may give the id of this process to another process.
   if (std::ranges::find(processes_, pid, &Process::pid) != processes_.end()) kill(pid, SIGKILL);
 }
 

@@ -1,5 +1,5 @@
-// The processes of a run on this machine: starts them, reads their output, and ends them. The
-// kernel kills them when the runner ends.
+// Starts the processes of a run on this machine, reads their output, and ends them. The kernel
+// kills these processes when the runner ends.
 #pragma once
 
 #include <sys/types.h>
@@ -30,7 +30,7 @@ class ProcessGroup : public RolePlace {
   pid_t Start(Role role, const std::filesystem::path& program,
               const std::vector<std::string>& arguments);
 
-  /// Starts the program of a role that is in the folder of the running program.
+  /// Starts the program of a role. This program is in the folder of the running program.
   pid_t StartRole(Role role, const std::vector<std::string>& arguments) override;
   /// Also reads the output of the processes.
   std::vector<Exit> Collect() override;

@@ -38,14 +38,15 @@ class RolePlace {
     bool killed;                     // whether a signal ended it; then it printed no reason
     std::vector<std::string> lines;  // the last lines that the process printed
   };
-  /// The processes that have ended since the last call. Call it every few tens of milliseconds.
+  /// The processes that have ended since the last call. Call this function every few tens of
+  /// milliseconds.
   virtual std::vector<Exit> Collect() = 0;
   /// Whether the machine has no running process of the run.
   virtual bool empty() const = 0;
   /// Roles and process ids for the user, such as "world 4711, radar 4712".
   virtual std::string Describe() const = 0;
 
-  /// Kills one of these processes.
+  /// Kills a process that StartRole() has started.
   virtual void Kill(pid_t pid) = 0;
   /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
   /// has many context switches each second.

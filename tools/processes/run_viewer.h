@@ -44,7 +44,7 @@ class RunViewer {
   std::vector<std::string> traffic_;
   WebChild web_;
   std::string address_;  // "http://127.0.0.1:7680/"; "": nothing was shown
-  bool said_ = false;    // whether the user knows that there is no page
+  bool said_ = false;    // whether the user was told that there is no page
   std::jthread late_;    // waits for an address that comes after the limit
 };
 

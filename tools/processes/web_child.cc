@@ -12,7 +12,7 @@
 namespace fogline::processes {
 namespace {
 
-// fogline-web ends within this time after SIGTERM. After that it is killed.
+// Limit for the time that fogline-web needs to end after SIGTERM. After this time it is killed.
 constexpr Duration kFarewellLimit = milliseconds(2000);
 // Interval at which a wait checks whether it must end.
 constexpr Duration kSlice = milliseconds(50);

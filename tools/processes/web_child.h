@@ -26,8 +26,8 @@ class WebChild {
   WebChild& operator=(const WebChild&) = delete;
 
   /// Starts fogline-web. First ends the process that an earlier call has started.
-  /// @param input stdin of fogline-web, short enough for a pipe. Other users of this machine can
-  ///     read the arguments of a process, but not its stdin
+  /// @param input stdin of fogline-web, short enough for a pipe. It is meant for secrets: other
+  ///     users of this machine can read the arguments of a process, but not its stdin
   /// @throws std::runtime_error if fogline-web cannot be started
   void Start(const std::vector<std::string>& arguments, const std::string& input = "");
   /// Waits until fogline-web has printed this number of addresses. fogline-web prints them when it

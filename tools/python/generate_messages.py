@@ -228,7 +228,7 @@ def main() -> None:
     for file in files:
         struct = read_struct(pathlib.Path(file))
         structs[struct.name] = struct
-    # A struct within another struct has only numbers (header_t), and comes first.
+    # header_t comes first, because other structs contain it. It has only numbers.
     order = sorted(structs.values(), key=lambda one: (one.name != "header_t", one.name))
     text = (
         '"""The messages of a run. Made from lcmtypes/*.lcm; do not edit."""\n\n'

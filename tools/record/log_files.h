@@ -11,7 +11,8 @@
 
 namespace fogline::record {
 
-/// Limits of a file, after which the next file begins. Without a limit there is one file.
+/// Limits of a file. An event that would exceed a limit is written into the next file. Without a
+/// limit there is one file.
 struct Rotation {
   std::int64_t most_bytes = 0;  // size of a file; 0: no limit
   Duration longest{};           // time since the file was begun; 0: no limit
@@ -24,8 +25,8 @@ struct Rotation {
 /// of an earlier recording with the same name are removed.
 class LogFiles {
  public:
-  /// Begins the first file. Replaces an existing file. With a rotation, also removes all files
-  /// InTheWay().
+  /// Begins the first file, and replaces an existing file of this name. With a rotation, also
+  /// removes all other files that InTheWay() finds.
   /// @throws InputError
   LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now);
 
@@ -41,9 +42,9 @@ class LogFiles {
   /// Number of files of an earlier recording that were removed.
   std::int64_t removed() const { return removed_; }
 
-  /// The name of a file of a recording with a rotation.
+  /// The name of file number `number` of a recording with a rotation.
   static std::filesystem::path NameOf(const std::filesystem::path& file, std::size_t number);
-  /// The existing files whose names a recording with a rotation can have.
+  /// All existing files whose name is the result of NameOf() for any number.
   static std::vector<std::filesystem::path> InTheWay(const std::filesystem::path& file);
 
  private:
@@ -56,7 +57,7 @@ class LogFiles {
   Rotation rotation_;
   std::vector<std::filesystem::path> files_;
   std::optional<log::EventLogWriter> log_;
-  std::vector<std::int64_t> ends_;  // where each event that is not flushed yet ends in the file
+  std::vector<std::int64_t> ends_;  // offset of the end of each event that is not flushed yet
   std::int64_t flushed_ = 0;        // number of bytes in the file before these events
   std::int64_t earlier_bytes_ = 0;
   std::int64_t removed_ = 0;

@@ -23,8 +23,8 @@ struct Message {
   runtime::Bytes data;
 };
 
-/// Assembles messages in bounded memory. If there is no room, it gives up the message that has
-/// waited longest for a fragment.
+/// Assembles messages in bounded memory. If there is no room, this class gives up the incomplete
+/// message whose first packet came earliest.
 class MessageAssembler {
  public:
   /// The data of a UDP packet is smaller than this.

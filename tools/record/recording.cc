@@ -19,13 +19,13 @@
 namespace fogline::record {
 namespace {
 
-// Interval at which the recording looks for an announced run, an error of the writer or its end.
+// Interval at which the recording looks for an announced run, and checks whether it must end.
 constexpr Duration kLookEvery = milliseconds(100);
-// Number of channel names for which the result of the matching is stored. If there are more names,
-// all stored results are deleted.
+// Number of channel names for which the result of the matching with RecordingOptions::channels is
+// stored. If there are more names, all stored results are deleted.
 constexpr std::size_t kMostNames = 10'000;
 constexpr std::string_view kOtherChannels = "(other channels)";
-// The thread that writes checks at least this often whether it should end.
+// If no message waits to be flushed, the writing thread waits at most this time for a message.
 constexpr Duration kIdle = milliseconds(1000);
 
 std::vector<std::unique_ptr<TrafficSource>> Only(std::unique_ptr<TrafficSource> source) {

@@ -80,7 +80,7 @@ class Recording {
 
   RecordingOptions options_;
   watch::Senders senders_;
-  std::vector<std::unique_ptr<TrafficSource>> sources_;  // for the URL, and for the followed run
+  std::vector<std::unique_ptr<TrafficSource>> sources_;  // of the URL, then of the followed run
   std::string followed_url_;
   std::optional<runtime::BeaconListener> listener_;
   TimePoint follow_at_{};

@@ -17,8 +17,8 @@ namespace {
 // Number of packets after which Drain() returns, so that the caller can do its other work.
 constexpr int kDrained = 4096;
 
-/// The messages of udpm, assembled from packets. The numbers in the packets show how many messages
-/// the log lacks.
+/// The messages of udpm (LCM's UDP multicast), assembled from packets. The numbers in the packets
+/// show how many messages the log lacks.
 class MulticastSource final : public TrafficSource {
  public:
   MulticastSource(const std::string& url, int buffer_bytes, watch::Senders& senders)
@@ -51,7 +51,8 @@ class MulticastSource final : public TrafficSource {
   MessageAssembler assembler_;
 };
 
-/// The messages of other networks, such as tcpq, received by a bus. They have no numbers.
+/// The messages of other networks, such as tcpq, received by a bus. They have no numbers, so lost
+/// messages cannot be counted.
 class BusSource final : public TrafficSource {
  public:
   explicit BusSource(const std::string& url) : bus_(url) {

@@ -18,7 +18,8 @@ class TrafficSource {
 
   /// Begins to listen.
   /// @param buffer_bytes size of the receive buffer to ask the kernel for
-  /// @param senders counts the messages of udpm, by their numbers; it must outlive the source
+  /// @param senders counts the messages of a udpm network, by their numbers; it must outlive the
+  ///     source
   /// @throws InputError, std::runtime_error if the network cannot be opened
   static std::unique_ptr<TrafficSource> Open(const std::string& url, int buffer_bytes,
                                              watch::Senders& senders);
@@ -30,8 +31,8 @@ class TrafficSource {
   /// thousands of messages.
   /// @throws std::runtime_error if the network is lost
   virtual void Drain(TimePoint now, const Use& use) = 0;
-  /// A line for the user when the connection to the network is cut off or comes back; "" if neither
-  /// has happened since the last call.
+  /// A line for the user if the connection to the network was cut off or came back since the last
+  /// call; otherwise "".
   virtual std::string TakeNews() = 0;
   /// A descriptor that is readable when messages have come.
   virtual int fd() const = 0;

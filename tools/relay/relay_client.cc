@@ -22,9 +22,10 @@ using boost::system::error_code;
 // A client has to send its magic (the first bytes of the tcpq protocol) within this time after it
 // connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
-// If the queue of a client is half full, the relay stops reading from this client until the client
-// reads, but at most for this time. The time is our choice: even on a busy machine, a process waits
-// less than this time for a processor.
+// The messages to a client wait in a queue. If messages of the client itself have filled half of
+// the queue, the relay stops reading from the client. It reads again when the queue has room, or
+// when the client has accepted nothing for this time. The time is our choice: even on a busy
+// machine, a process waits less than this time for a processor.
 constexpr std::chrono::seconds kLongestPause(5);
 
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
@@ -108,7 +109,8 @@ void RelayClient::Read() {
                             self->Take(runtime::Bytes(self->read_).first(size));
                             if (self->gone_) return;
                             AcknowledgeAtOnce(self->socket_);
-                            // Only the client's own messages have come since `before`.
+                            // Since `before`, only messages of this client have been handled. So
+                            // only they can have made its queue longer.
                             const bool fills_itself = self->Queued() > before && self->LacksRoom();
                             fills_itself && !self->stuck_ ? self->Pause() : self->Read();
                           });
@@ -124,7 +126,8 @@ void RelayClient::Pause() {
   paused_ = true;
   pause_.expires_after(kLongestPause);
   pause_.async_wait([self = shared_from_this()](error_code cancelled) {
-    // A handler may already be waiting when its timer is cancelled or set again.
+    // If this handler already waits to be called when its timer is cancelled or set again, it gets
+    // no error. So it checks the time and the state, too.
     const bool over = self->pause_.expiry() <= boost::asio::steady_timer::clock_type::now();
     if (cancelled || !over || !self->paused_ || self->gone_) return;
     self->stuck_ = true;

@@ -37,12 +37,13 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
 
  private:
   void Read();
-  /// Stops reading, because the client's own messages have filled its queue. A client that
-  /// publishes faster than it reads would otherwise be disconnected. The pause ends when the queue
-  /// has room again, or when the client has accepted nothing for kLongestPause.
+  /// Stops reading from a client that gets its own messages and publishes faster than it reads. Its
+  /// own messages have filled its queue, and with more of them it would be disconnected. The pause
+  /// ends when the queue has room again, or when the client has accepted nothing for kLongestPause.
   void Pause();
   void EndPause();
-  /// Handles that the client has accepted bytes: a pause ends, or goes on for kLongestPause.
+  /// Called when the client has accepted bytes. A pause ends if the queue has room again. Otherwise
+  /// the pause may last another kLongestPause.
   void Progress();
   /// The number of bytes that the client has not accepted yet.
   std::size_t Queued() const { return sending_.size() - sent_ + waiting_.size(); }

@@ -14,19 +14,21 @@ namespace {
 // Limit for the stored matching results of each client. A testbed has tens of channels. Without
 // this limit, names that change all the time would fill the memory.
 constexpr std::size_t kMaxKnown = 1000;
-// Limit for the bytes of all expressions: kMeanBytes for each allowed expression, and kSpareBytes
-// for a few long expressions. Boost takes up to 320 bytes of memory for each byte of an expression.
+// Limit for the bytes of all expressions of a client: kMeanBytes for each allowed expression, and
+// kSpareBytes for a few long expressions. Boost takes up to 320 bytes of memory for each byte of an
+// expression.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
 // Budget of processor time for new channel names, in seconds. The budget is full at first. An empty
-// budget is full again after ten seconds. Boost itself does not limit the time enough: it gives up
-// a match that takes too many steps, but a match within this limit takes up to a fifth of a second,
+// budget is full again after ten seconds. Boost itself does not limit the time enough. It gives up
+// a match that takes too many steps. But a match within this limit takes up to a fifth of a second,
 // and a client may have many expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// For each new name, this much processor time is free: it is not charged to the budget. Tens of
-// simple expressions take no longer, so new names do not use the budget of a client with a few
-// simple expressions. The relay needs about the same time to receive a name.
+// For each new channel name, this much processor time is free: it is not charged to the budget. To
+// match a name with tens of simple expressions takes no longer. So new names do not use the budget
+// of a client that has only a few simple expressions. The relay needs about the same time to
+// receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {

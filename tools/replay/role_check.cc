@@ -53,7 +53,8 @@ std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run) {
     const runtime::BuildId build = says.build_id[static_cast<std::size_t>(place)];
     const runtime::BuildId ours = runtime::BuildIdOf(processes::ProgramOf(info.role));
     // If one process made the whole run, the seal has the build of that process's program for each
-    // role. That program may be the program that runs now.
+    // role. That process may have run the same program as this process. So the build of this
+    // process's program counts as equal, too.
     if (build != runtime::kUnknownBuild && (build == ours || build == runtime::OwnBuildId()))
       continue;
     others.push_back({.role = info.role, .pid = 0, .host = "", .build = build, .ours = ours});

@@ -50,8 +50,9 @@ struct Verification {
   std::string Trouble() const;
 };
 
-/// The roles whose build is unknown in the seal of a log, or differs from the build of the role's
-/// program in the folder of this program. The list is empty for a log without a complete seal.
+/// The roles whose build is unknown in the seal of a log, or is neither the build of this program
+/// nor the build of the role's program in the folder of this program. The list is empty for a log
+/// without a complete seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
 /// Computes the steps of a run again from its log, and compares them with the log.

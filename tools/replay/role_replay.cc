@@ -87,7 +87,7 @@ class ReplayOf final : public RoleReplay {
   }
 
   /// Passes the person's input that the logged command names. @return a difference if the log lacks
-  /// it
+  /// this input
   std::optional<Difference> PassLiveInput(
       std::int64_t step, const log::StepMessages& messages) requires Traits::kHasLive {
     Output logged{};

@@ -39,7 +39,7 @@ std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
                                            const log::DriverInputs& inputs = {});
 
 /// The names of the channels that a role reads or sends, but that the log does not have, because
-/// another version of Fogline wrote it; "" if there are none.
+/// another version of Fogline wrote the log; "" if there are none.
 std::string MissingChannels(Role role, const log::RunLog& run);
 
 /// Whether the log of a run has all data that a role's commands depend on.

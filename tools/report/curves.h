@@ -1,4 +1,4 @@
-// Content of the figures of the curves over thresholds, for the report's HTML page and for the
+// Content of the figures that show curves over thresholds, for the report's HTML page and for the
 // figure files.
 #pragma once
 
@@ -12,8 +12,8 @@
 namespace fogline::report {
 
 /// A point in the plane of mean RHE and mean SI. Thresholds with equal RHE and equal SI share one
-/// point. The front is the Pareto front: no other point has at least as much SI with at most as
-/// much RHE.
+/// point. A point is on the front (the Pareto front) if no other point has at least as much SI with
+/// at most as much RHE.
 struct FrontPoint {
   double rhe_pct = 0;
   double si_pct = 0;
@@ -22,15 +22,17 @@ struct FrontPoint {
   // these two thresholds and all thresholds of the curves between them.
   std::string thresholds;
   bool on_front = false;
-  bool beside = true;  // whether a label has room to the right of the point; false on a flat front
+  // Whether a label has room to the right of the point. It has no room if the front rises only
+  // slowly from this point to the next point.
+  bool beside = true;
 };
 
 /// All points, by ascending RHE, then SI. Thresholds without SI or RHE have no point.
 std::vector<FrontPoint> FrontPoints(const ReportCurves& curves);
 
-/// Indices of the points that may get a label, the most important first. Points with a multiple of
-/// 0.1 among their thresholds come first, in descending number of thresholds. The other points on
-/// the front follow.
+/// Indices of the points that may get a label, the most important first. The list begins with the
+/// points that have a multiple of 0.1 among their thresholds; of these, points with more thresholds
+/// come first. The other points on the front follow.
 std::vector<std::size_t> LabelOrder(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// The seeds as text, such as "seeds 1 to 200" or "seed 7".

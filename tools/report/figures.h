@@ -76,7 +76,8 @@ struct Figure {
   bool strips = false;
 };
 
-/// The change of the host's acceleration since the previous sample, per second.
+/// The jerk of the host, m/s3: the change of its acceleration since the previous sample, divided by
+/// the time since then. NaN for the first sample.
 double HostJerk(std::span<const metrics::Sample> samples, std::size_t index);
 
 namespace internal {

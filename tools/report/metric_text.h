@@ -11,17 +11,17 @@
 
 namespace fogline::report {
 
-/// The longest time to collision that is printed as a number, s. The time grows without bound as
-/// two speeds become equal. At a gap of 36 m, 1000 s correspond to a closing speed of 4 cm/s. This
-/// speed is as small as the noise of a radar's range rate. Critical times are below 4 s
+/// The longest time to collision that is printed as a number, s. When the speeds of two cars become
+/// equal, this time grows without bound. At a gap of 36 m, 1000 s correspond to a closing speed of
+/// 4 cm/s, which is as small as the noise of a radar's range rate. Critical times are below 4 s
 /// (measures.critical_ttc_s).
 inline constexpr double kLongestTtc_s = 1000;
 
 /// Whether the measure with this name is a time to collision.
 bool IsTimeToCollision(std::string_view name);
 
-/// Formats a finite value with its meaningful digits. The unit limits the decimals: to a
-/// millimetre, or to a hundredth of a second. Decimals after the fourth significant digit are left
+/// Formats a finite value with its meaningful digits. The unit limits the decimals, for example to
+/// a millimetre or to a hundredth of a second. Decimals after the fourth significant digit are left
 /// out, except in a percentage. A whole number without unit has no decimals. 0 is "0". Any other
 /// value that rounds to 0 becomes "< 0.001" or "> -0.001". "> 1000" stands for any time to
 /// collision above kLongestTtc_s.

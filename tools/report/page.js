@@ -160,7 +160,7 @@ function draw() {
   buildCurves();
 }
 
-/** Calls `change`, which changes the compared runs. Then draws the figures again. */
+/** Calls `change`, which changes the shown runs or their view. Then draws the figures again. */
 function compare(change) {
   const shared = sharesAxes();
   change();

@@ -67,7 +67,8 @@ std::string BadgeElement(const ReportRun& run) {
                      BadgeOf(run));
 }
 
-/// One entry of the run selector: the origin of the run, and four numbers.
+/// One entry of the run selector: the origin of the run, and up to four values (safety improvement,
+/// driving time of the human, worst compromised safety, collision).
 std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   const ReportRun& run = runs[index];
   std::string facts;
@@ -151,7 +152,7 @@ std::string RequestsSection(std::span<const ReportRun> runs) {
   return Section("take-overs", "Take-overs", content);
 }
 
-/// The values of a number in all runs: "7", or "7 to 9" if the runs differ.
+/// The range of a number over all runs: "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   const auto [first, last] = std::ranges::minmax(std::views::transform(runs, get));

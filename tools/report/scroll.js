@@ -9,7 +9,8 @@ function markScroll(element) {
   element.classList.toggle("more", scrollWidth > clientWidth + scrollLeft + slack);
 }
 
-// Marks change the size of the observed element. So the marks are set in the next frame.
+// Marks change the size of the observed element. If an observer changes sizes during its call, the
+// browser reports an error. So the marks are set in the next frame.
 const scrollSizes = new ResizeObserver((entries) => {
   const changed = new Set(entries.map(({target}) => target.closest(".scroll")));
   requestAnimationFrame(() => changed.forEach(markScroll));

@@ -94,7 +94,7 @@ std::string FogText(std::span<const metrics::Sample> samples) {
 struct Deception {
   double short_m = 0;  // largest length by which the LiDAR's range was too short
   double far_m = 0;
-  double lost_s = 0;  // longest time without an echo in a run
+  double lost_s = 0;  // largest total time without an echo in one run
 };
 
 Deception DeceptionOf(const Group& group) {

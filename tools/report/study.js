@@ -277,7 +277,10 @@ new ResizeObserver(() => {
   }
 }).observe(document.body);
 
-/** Sets the properties that do not change when the reader shows and hides series. */
+/**
+ * Sets `rank` (order of the colours) and `atFirst` (whether a series is shown at first). Both stay
+ * the same when the reader shows and hides series.
+ */
 function prepare(figure) {
   const names = ({series}) => series.map(({name}) => name).join();
   const alike = figures.filter((other) => names(other) === names(figure));

@@ -11,7 +11,10 @@ function numberText(value) {
   return value < 0 ? `−${text}` : text;
 }
 
-/** Position of a value on the axis, and the value at a position. */
+/**
+ * placeOfX(), placeOfY(): position of a value on the axis. xAtPlace(), yAtPlace(): value at a
+ * position. On a logarithmic axis, the position is the decimal logarithm of the value.
+ */
 const placeOfX = (figure, x) => figure.logX ? Math.log10(x) : x;
 const xAtPlace = (figure, place) => figure.logX ? 10 ** place : place;
 const placeOfY = (figure, y) => !figure.logY || y == null ? y : y > 0 ? Math.log10(y) : null;

@@ -50,7 +50,7 @@ json FigureData(const StudyFigure& figure) {
           {"series", std::move(series)}};
 }
 
-/// Notes on the y axis for the reader.
+/// A note for the reader on the scale of the y axis; "" for a plain axis.
 std::string ScaleText(const StudyFigure& figure) {
   if (figure.log_y) return " <span class=\"unit\">(logarithmic)</span>";
   if (!std::isfinite(figure.most)) return "";

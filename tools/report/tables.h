@@ -31,8 +31,8 @@ std::string DifferenceTable(std::span<const ReportRun> runs);
 /// Name of a run, or its number if it has no name.
 std::string RunName(std::span<const ReportRun> runs, std::size_t index);
 
-/// Text of a badge for a run whose log is not complete. It says where the log ends if the last step
-/// is missing. "" for a complete log.
+/// Text of a badge for a run whose log is not complete; "" for a complete log. If the last step is
+/// missing, the text says after which step the log ends.
 std::string BadgeOf(const ReportRun& run);
 
 }  // namespace fogline::report

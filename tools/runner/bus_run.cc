@@ -125,7 +125,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
     for (const auto& role : roles) next = std::min(next, role->node().Poll(now));
-    // Handles all waiting messages first. After that, the roles act on the time again (Poll()).
+    // All waiting messages are handled before the next call of Poll().
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());
     TellLoggedStep(coordinator, options);
@@ -216,9 +216,10 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
   return {.restarts = supervisor.restarts(), .priority = priority.found()};
 }
 
-/// The last report of each recorder process of a run about the log (in STATUS). All of them except
-/// the last one have ended. In real time, a recorder may remove the end of the log that an earlier
-/// recorder wrote. So in real time, only the report of the last recorder counts.
+/// What each recorder process of a run has written into the log, according to its last STATUS. All
+/// these processes except the last one have ended. In real time, a recorder may remove the end of
+/// the log that an earlier recorder wrote. So in real time, only the STATUS of the last recorder
+/// counts.
 std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
   std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
@@ -245,8 +246,8 @@ std::string UrlOf(const std::string& transport, bool far) {
                   transport));
 }
 
-/// The role as which the runner's bus signs messages and applies faults. In memory, the bus does
-/// this for every role; the result is then nullopt.
+/// The role in whose name the runner's bus signs messages and applies faults. In memory, the bus
+/// does this for every role, so the result is nullopt.
 std::optional<Role> SenderOn(const std::string& url) {
   return runtime::IsInMemory(url) ? std::nullopt : std::optional(Role::kRunner);
 }

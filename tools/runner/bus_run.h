@@ -30,7 +30,7 @@ struct BusRun {
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
-/// The id of a new run: options.run_id if it is set, otherwise a drawn id.
+/// The id of a new run: options.run_id if it is set, otherwise a random id.
 inline std::int64_t RunIdOf(const RunOptions& options) {
   return options.run_id ? *options.run_id : DrawRunId();
 }

@@ -105,7 +105,8 @@ void LogSealer::SealCutOff(const std::vector<log::WrittenLog>& written, const Lo
     log::RunLogReader reader(log_);
     while (reader.Next() != nullptr) {
     }
-    // A seal behind an incomplete event would look like a part of this event.
+    // If the log ends with an incomplete event, it gets no seal. A seal behind this event would
+    // look like a part of the event.
     if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
     Seal(reader.run(), written, roles, key);
   } catch (const std::exception&) {  // the error that ended the run is more important

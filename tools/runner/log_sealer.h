@@ -32,7 +32,8 @@ class LogSealer {
   /// Whether the file has exactly the number of bytes that the recorders have reported.
   bool HasAllTold(const std::vector<log::WrittenLog>& written) const;
 
-  /// Checks the file again, appends the priority of the roles and seals it.
+  /// Checks the file again. In real time, appends the priority of the roles if it is known and the
+  /// log lacks it. Then seals the file.
   /// @param run the run as read from the whole file
   /// @param key signs the seal; nullptr: no signature
   /// @throws std::runtime_error like Check(), or if the seal cannot be written

@@ -15,8 +15,8 @@ namespace {
 
 // Interval at which the runner checks whether awaited roles belong to other runs.
 constexpr Duration kLookForExternal = milliseconds(100);
-// A role asks for its priority before it computes its first step. If a role has computed no step
-// for this time, its priority is examined nevertheless.
+// A role asks for its priority before it computes its first step. So the runner waits until all
+// roles compute steps, and then examines their priorities. It waits no longer than this time.
 constexpr Duration kPriorityIsKnown = milliseconds(1000);
 
 using Phase = runtime::RunCoordinator::Phase;

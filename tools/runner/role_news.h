@@ -21,8 +21,8 @@ std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role
 /// The processes whose build differs from the runner's build, including processes that have ended.
 std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator);
 
-/// Reports the processes whose role this run waits for, but which belong to another run. Each
-/// process is reported once.
+/// Reports processes that belong to another run, if this run waits for their roles. Each process is
+/// reported once.
 class BusyElsewhere {
  public:
   BusyElsewhere(std::int64_t run_id, std::function<void(const std::string&)> say)
@@ -48,7 +48,7 @@ class Warnings {
 
  private:
   void Say(const std::string& what) { progress_.Say("warning: " + what); }
-  /// Names the processes that claim a role of another process.
+  /// Names the processes that claim a role which another process already has.
   void NameTheRefused();
 
   runtime::RunCoordinator& coordinator_;

@@ -300,7 +300,8 @@ RunResult RunLogged(const Scenario& scenario, const RunOptions& options) {
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
     const closed_loop::ClosedLoop parts(scenario);
-    // SUMO reads its network and its routes only when a run begins. So the world is started here.
+    // SUMO reads its network and its routes only when a run begins. To find mistakes in them, the
+    // world is started here.
     if (scenario.lead.profile == LeadProfile::kSumo) world::World(scenario).Start(0);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.
@@ -324,7 +325,7 @@ std::string WhyTooFast(const Scenario& scenario, double speed) {
 
 RunResult RunScenario(const Scenario& scenario, const RunOptions& options) {
   if (scenario.lead.profile == LeadProfile::kSumo && scenario.lead.sumo.version.empty()) {
-    // The log names SUMO's version, because only this version computes the run again.
+    // The log names SUMO's version, because only this version computes the same run again.
     Scenario stated = scenario;
     stated.lead.sumo.version = models::SumoVersion();
     return RunScenario(stated, options);

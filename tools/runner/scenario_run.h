@@ -55,7 +55,7 @@ struct RunOptions {
   hosts::RunPlan hosts;                  // roles that the run starts on other machines
   Duration wait = milliseconds(60'000);  // longest wait until external roles are ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // most restarts of each role that is killed or hangs; 0: no restart
+  int restarts = 10;  // limit of restarts for each role that is killed or hangs; 0: no restart
   /// Whether to compute the roles' steps again from the log, and compare the results. By default,
   /// the steps are computed again if roles run on other machines, are started elsewhere, or the run
   /// is resumed.
@@ -114,7 +114,7 @@ struct RunResult {
 /// constructs every part of a run, but computes no step. So it finds fields whose values are valid
 /// alone, but not together.
 /// @param file name of the scenario for the user
-/// @throws ScenarioError with the rule "impossible"
+/// @throws ScenarioError if the run is not possible; Diagnostic::rule is then "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
 /// The reason why a scenario cannot run in real time at this speed: its steps would be shorter than
@@ -123,8 +123,8 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 std::string WhyTooFast(const Scenario& scenario, double speed);
 
 /// Opens the network of a run once, with the key and the faults of the run, and closes it. So a
-/// caller can check them before a person waits for the run, and before a file is written. A relay
-/// of the run's own (tcpq) is not started.
+/// caller finds an error in network, key or faults before a person waits for the run, and before a
+/// file is written. With tcpq the function does nothing, because the run starts its own relay.
 /// @throws InputError, std::runtime_error as RunScenario()
 void CheckNetwork(const RunOptions& options);
 
@@ -141,7 +141,8 @@ struct LoggedRun : log::RunLog {
 /// TRUTH has no sample, and result.take_overs is empty if the measures of take-overs are unknown.
 /// @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log, const log::ReadOptions& options = {});
-/// Reads a run without samples, in memory that does not grow with the length of the run.
+/// Reads a run, but does not keep its samples. So the memory does not grow with the length of the
+/// run.
 /// @param scenario the scenario in the log
 /// @throws InputError
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario,

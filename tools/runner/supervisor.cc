@@ -118,7 +118,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
     coordinator_.Hinder(child.role, error.what());
     return;
   }
-  if (child.ended_at_once > 1) return;  // after the second early end, no restart is reported
+  if (child.ended_at_once > 1) return;  // from the second early end on, no restart is reported
   options_.say(fmt::format("{} ({}) {}; started again as pid {} ({} of {})", NameOf(child.role),
                            PidText(*child.place, before), child.death, child.pid,
                            child.policy.restarts(), child.policy.limit()));
@@ -130,8 +130,9 @@ void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
-  // A restarted process may end by itself before its first STATUS. It has the same arguments as the
-  // process before it. So something is probably missing that may come back, such as the network.
+  // A restarted process may end by itself before its first STATUS. An earlier process had the same
+  // arguments and ran. So the cause is probably temporary, such as a network that is down, and the
+  // process is started again.
   const auto& status = coordinator_.member(exit.role).status;
   const bool met = status && status->pid == exit.pid;
   if (!exit.killed && !met && child->policy.restarts() > 0) {
@@ -174,7 +175,7 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   if (!InSight(child) || silent < limit / 2 || !child.killed_for.empty()) return;
   if (!child.activity) child.activity = child.place->ActivityOf(child.pid);
   if (silent < limit) return;
-  // A process with new context switches still runs. It may work, and its messages may be lost.
+  // A process with new context switches still runs. Perhaps it works, but its messages are lost.
   const bool runs = child.place->ActivityOf(child.pid) != child.activity;
   const std::string& host = child.place->name();
   if (runs && !met && !host.empty()) {
@@ -258,7 +259,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .last = child->death});
     } else {
       // If a new process of the role came shortly before the end of the run, the previous process
-      // may not have been silent long enough to count as ended.
+      // may not have been silent long enough to count as ended. `replaced` does not contain this
+      // restart, so it is added here.
       const bool late = member.rival && member.status && member.heard < member.rival_since;
       const int elsewhere = member.replaced + (late ? 1 : 0);
       if (elsewhere == 0) continue;

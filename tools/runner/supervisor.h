@@ -1,10 +1,11 @@
 // The supervisor of a run's processes, on this machine and on others. It starts and watches the
-// processes. It restarts a process that is killed, hangs or is deaf. A process that exits by itself
-// has printed the reason, and is not started again. (There is one exception: a restarted process
-// may exit before its first STATUS. It is then started again and again, until the stall timeout
-// ends the run.) In lockstep, the exit of a process by itself ends the run. A run in real time goes
-// on without this process if RunCoordinator::GoesOnWithout() is true, the process was not deaf, and
-// restarts are allowed.
+// processes. It restarts a process that is killed, hangs or is deaf. (In real time, a process is
+// deaf if it receives no message on a channel although the producer of the channel computes.) A
+// process that exits by itself has printed the reason, and is not started again. (There is one
+// exception: a restarted process may exit before its first STATUS. It is then started again and
+// again, until the stall timeout ends the run.) In lockstep, the exit of a process by itself ends
+// the run. A run in real time goes on without this process if RunCoordinator::GoesOnWithout() is
+// true, the process was not deaf, and restarts are allowed.
 #pragma once
 
 #include <functional>
@@ -24,9 +25,9 @@ namespace fogline::runner {
 
 class Supervisor {
  public:
-  /// Longest time without a STATUS of a process that prepares for the run and has context switches.
-  /// Such a process does not count as hanging: it sends no STATUS, for example while SUMO loads its
-  /// network.
+  /// A process that prepares for the run may send no STATUS, for example while SUMO loads its
+  /// network. For this time it does not count as hanging if it has new context switches, because
+  /// they show that it still runs.
   static constexpr Duration kPrepareLimit = milliseconds(60'000);
 
   struct Options {
@@ -37,7 +38,7 @@ class Supervisor {
     bool wall_clock = false;                  // the log has the wall clock of each step
     runtime::TrafficOptions traffic;          // of every process
     std::vector<Role> external;               // roles that are started elsewhere
-    const hosts::HostGroup* hosts = nullptr;  // other machines on which it starts roles
+    const hosts::HostGroup* hosts = nullptr;  // other machines that run roles
     int restarts = 0;    // limit for each role; 0: the first end of a process ends the run
     Duration silence{};  // time without a STATUS after which a process counts as hanging and is
                          // killed
@@ -47,9 +48,9 @@ class Supervisor {
   /// Starts every role. @throws std::runtime_error
   Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options);
 
-  /// Finds processes that have ended, and kills processes that hang or are deaf. Starts a process
-  /// of a role again when the wait of its RestartPolicy is over. Call it every few tens of
-  /// milliseconds.
+  /// Finds processes that have ended. Kills processes that hang, and processes that are deaf
+  /// (receive no message of a channel on which messages are sent). Starts a process of a role again
+  /// when the wait of its RestartPolicy is over. Call it every few tens of milliseconds.
   void Look(TimePoint now);
 
   /// Sends STOP until every process has left, but only for a limited time. The destructor kills the
@@ -68,7 +69,7 @@ class Supervisor {
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // measured when half of the silence limit has passed
+    std::optional<std::int64_t> activity{};  // context switches at half of the silence limit
     std::string killed_for{};                // the reason why the supervisor killed the process
     bool deaf = false;                       // whether it was killed because it was deaf
     std::string death{};                     // how the role's last process ended

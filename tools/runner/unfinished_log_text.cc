@@ -17,8 +17,8 @@
 namespace fogline::runner {
 namespace {
 
-/// Whether the log has steps of this run. A run that ends before its first step leaves an older log
-/// unchanged.
+/// Whether the log has steps of this run. If the run has ended before its first step, the file may
+/// still be an older log of another run.
 bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
   try {
     return log::ReadFront(log).run_id == run_id && log::HasSteps(log);

@@ -8,8 +8,8 @@
 
 namespace fogline::runner {
 
-/// A text with the name of the log and the command that resumes it, or a text that no log was
-/// written; "" for a run without a log.
+/// A text with the name of the log and the command that resumes it, or a text that says that no log
+/// was written; "" for a run without a log.
 std::string UnfinishedLogText(std::int64_t run_id, const RunOptions& options);
 
 /// The command that resumes the log of a run. The command has the options of the run that the log

@@ -1,6 +1,6 @@
 // LCM's own viewers, lcm-spy and lcm-logplayer-gui. Both are Java programs of lcm.jar. Debian's
-// scripts in /usr/bin cannot start them, because they pass an option that Java removed in
-// version 14.
+// scripts in /usr/bin cannot start these programs, because the scripts pass an option that Java
+// removed in version 14.
 #pragma once
 
 #include <filesystem>

@@ -57,8 +57,8 @@ std::string WhyNoScreen(const std::string& display) {
   const std::size_t colon = display.find(':');
   const std::string host = display.substr(0, colon);
   if (colon == std::string::npos || !(host.empty() || host == "unix")) return "";
-  // DISPLAY is HOST:SERVER.SCREEN. A server of this machine listens at the abstract socket of the
-  // name below, and at the socket file with this name (X(7)).
+  // DISPLAY is HOST:SERVER.SCREEN. A server of this machine listens at the socket file `file`, and
+  // at the abstract socket with the same name (X(7)).
   const std::string server = display.substr(colon + 1, display.find('.', colon) - colon - 1);
   const std::string file = "/tmp/.X11-unix/X" + server;
   if (TryToConnect(std::string(1, '\0') + file) == 0) return "";

@@ -26,9 +26,9 @@ std::filesystem::path InstalledJar(const std::string& name);
 /// @param programs folder of the program
 std::filesystem::path TypesJar(const std::filesystem::path& programs);
 
-/// The library that lets a Java program receive traffic that stays on this machine
-/// (hear_loopback.c). It is in the build or installation of the program in `programs`; "" if there
-/// is none.
+/// The library (hear_loopback.c) that lets a Java program receive traffic that stays on this
+/// machine; "" if the build or installation of a program has none.
+/// @param programs folder of the program
 std::filesystem::path HearLoopback(const std::filesystem::path& programs);
 
 }  // namespace fogline::spy

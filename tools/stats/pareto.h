@@ -15,8 +15,8 @@ struct TradeOff {
 
 /// Indices of the points that no other point dominates, in order of ascending RHE. Equal points
 /// keep the given order. A point dominates another point if it is better in one quantity and equal
-/// or better in the other quantity. So equal points are all on the front. A point with NaN is not
-/// on the front and dominates no point.
+/// or better in the other quantity. So of several equal points, all or none are on the front. A
+/// point with NaN is not on the front and dominates no point.
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points);
 
 }  // namespace fogline::stats

@@ -12,7 +12,8 @@ namespace {
 /// Half of the probability outside a confidence interval of 95 %.
 constexpr double kTail = 0.025;
 
-/// Value of `sorted` at a share in [0, 1] of the way from the first to the last value.
+/// The value of `sorted` at the position `share`, from 0 (first value) to 1 (last value). The
+/// result is interpolated linearly between the two nearest values.
 double At(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

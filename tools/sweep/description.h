@@ -1,6 +1,6 @@
-// Description of a sweep file: grid, seeds, scenario, and the shard whose rows the file has. The
-// description is in "FILE.json" beside the sweep file. A sweep recognises its own file by the
-// description, and a merge recognises the shards of one sweep.
+// Description of a sweep file: grid, seeds, scenario, and the shard (the part of the sweep) whose
+// rows the file has. The description is in "FILE.json" beside the sweep file. A sweep recognises
+// its own file by the description, and a merge recognises the shards of one sweep.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,16 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// The path "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file belongs to a sweep. It does if there is a readable description beside the file.
+/// Whether a file is the file of a sweep: whether a readable description is beside the file.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.
 /// @throws InputError if there is no description, or it is damaged
 Description ReadDescription(const std::filesystem::path& csv);
 
-/// Writes the complete description beside a sweep's file, or nothing.
-/// @throws InputError if the file cannot be created, std::runtime_error when the disk is full
+/// Writes the description beside a sweep's file, completely or not at all.
+/// @throws InputError if the description's file cannot be created; std::runtime_error when the disk
+/// is full
 void WriteDescription(const std::filesystem::path& csv, const Description& description);
 
 }  // namespace fogline::sweep

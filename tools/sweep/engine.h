@@ -17,12 +17,12 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Measures of this run and its paired run together. They are all empty for a run that is its own
-  /// pair. A measure is also empty if no step counts for it, for example because the paired run has
-  /// no compromised safety in fog.
+  /// Measures that compare this run with its paired run. They are all empty for a run without
+  /// traded control, because such a run is its own paired run. A measure is also empty if no step
+  /// counts for it, for example because the paired run has no compromised safety in fog.
   metrics::PairedMetrics paired;
-  /// The effect of the fog in the paired run without traded control; empty for a run that is its
-  /// own pair.
+  /// The effect of the fog in the paired run, which has no traded control. Empty if this run itself
+  /// has no traded control.
   metrics::FogEffect without;
 };
 
@@ -37,7 +37,7 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// Computes the rows of a unit from `begin` up to, but not including, `end`, at once.
+  /// Computes some rows of a unit together: from `begin` up to, but not including, `end`.
   void ComputeRows(std::int64_t unit, std::int64_t begin, std::int64_t end,
                    std::vector<SweepRow>& rows);
 
@@ -45,7 +45,7 @@ class SweepWorker {
   /// The scenario without traded control, and the scenarios of the rows.
   std::vector<Scenario> scenarios_;
   PairedRuns runs_;
-  std::int64_t row_ = 0;  // the row that is computed, or cannot be computed
+  std::int64_t row_ = 0;  // after an exception: the row that could not be computed
 };
 
 /// Called with the rows of each unit, in order of units; returns false to stop.

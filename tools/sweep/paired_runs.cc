@@ -2,13 +2,13 @@
 
 namespace fogline::sweep {
 
-/// Collects the measures of a run and of its pair.
+/// Collects the measures of a PairedRow, step by step.
 class PairedRuns::Accumulators {
  public:
   explicit Accumulators(const Scenario& scenario) : measures_(scenario), pair_(scenario) {}
 
-  /// Adds the next step of the run. `baseline` has the steps of the run without traded control,
-  /// which may end earlier.
+  /// Adds the next step of the run. `baseline` has the steps of the run without traded control.
+  /// That run may end earlier.
   void Add(const metrics::Sample& sample, std::span<const metrics::Sample> baseline) {
     measures_.Add(sample);
     if (steps_ < baseline.size()) pair_.Add(baseline[steps_++], sample);

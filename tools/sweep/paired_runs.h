@@ -14,13 +14,12 @@
 
 namespace fogline::sweep {
 
-/// Measures of a run and of its pair.
+/// Measures of a run, and measures that compare it with the run without traded control.
 struct PairedRow {
   metrics::RunMetrics measures;
-  /// Measures of the run and the run without traded control together. If one of the two runs ends
-  /// early, these measures use only the steps that both runs have. A measure is empty if no step
-  /// counts for it, for example because the run without traded control has no compromised safety in
-  /// fog.
+  /// Measures that compare the run with the run without traded control, step by step. They use only
+  /// the steps that both runs have. A measure is empty if no step counts for it, for example
+  /// because the run without traded control has no compromised safety in fog.
   metrics::PairedMetrics paired;
 };
 
@@ -29,8 +28,8 @@ struct PairedRow {
 /// between calls, because allocating them again would take time.
 class PairedRuns {
  public:
-  /// Computes the run of the first scenario, which has no traded control, and the runs of the other
-  /// scenarios. @return the rows of the other scenarios
+  /// Computes the runs of all scenarios. The first scenario has no traded control, and the other
+  /// runs are paired with its run. @return the rows of the other scenarios
   /// @throws as SharedRuns::Run(); current() is then the position of the scenario whose run has
   /// thrown
   std::vector<PairedRow> Run(std::span<const Scenario> scenarios);

@@ -17,8 +17,9 @@ namespace {
 constexpr std::int64_t kMaxPoints = 1'000'000;
 
 /// Largest number of rows of a sweep. With more rows, a sweep on one core would take more than a
-/// year. A sweep has at most as many units as rows. ShardEnd() multiplies the number of units by
-/// the number of a shard, and this product is far within 64 bits.
+/// year. The limit also prevents an overflow in ShardEnd(), which multiplies the number of units by
+/// the index of a shard. There are at most as many units as rows, and at most kMaxShards shards. So
+/// the product is at most 1e17, and a 64-bit integer can hold 9e18.
 constexpr std::int64_t kMaxRows = 100'000'000'000;
 
 /// Largest number of shards of a sweep.
@@ -91,8 +92,8 @@ std::vector<std::string> Spaced(std::string_view text) {
   return values;
 }
 
-/// Refuses values that are equal, also if a number is written in two ways, such as 0.5 and 0.50, or
-/// 0 and -0.
+/// Refuses values that are equal. Two texts of the same number count as equal values, such as 0.5
+/// and 0.50, or 0 and -0.
 /// @throws InputError
 void RefuseEqual(const std::string& argument, const std::vector<std::string>& values) {
   std::set<std::string> known;
@@ -205,9 +206,9 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   if (left == 0) {
     throw InputError(fmt::format("error: --seeds and --grid give more than {} rows", kMaxRows));
   }
-  // stride_ is the distance in rows between two neighbouring values of an axis. Only the axes of
-  // the same kind (of the arbitrator, or other axes) count for this distance. The last axis of a
-  // kind varies fastest.
+  // The axes of the arbitrator and the other axes form two separate grids. stride_ is the number of
+  // points of the grid from one value of an axis to its next value. The last axis of a grid varies
+  // fastest.
   stride_.resize(axes_.size());
   for (std::size_t i = axes_.size(); i-- > 0;) {
     std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;

@@ -53,10 +53,10 @@ struct Shard {
 /// Reads a shard "I/N". @throws InputError
 Shard ParseShard(const std::string& text);
 
-/// The rows of a sweep. Axes of the arbitrator do not change a run without traded control. So rows
-/// that differ only in these axes share their paired run. Such rows follow each other and form one
-/// unit of work. Rows are ordered by the other axes (in the given order), then by seed, then by the
-/// arbitrator's axes.
+/// The rows of a sweep. Each row is paired with a run without traded control. Axes of the
+/// arbitrator do not change this run. So rows that differ only in these axes share one paired run.
+/// These rows follow each other and form one unit of work. Rows are ordered by the other axes (in
+/// the given order), then by seed, then by the arbitrator's axes.
 class SweepPlan {
  public:
   /// @param file source of the scenario, for messages

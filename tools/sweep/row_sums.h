@@ -15,10 +15,11 @@ namespace fogline::sweep {
 /// The path "FILE.sums".
 std::filesystem::path SumsFile(const std::filesystem::path& csv);
 
-/// The line of a row: the row's CRC-32 (as in zlib and gzip) in hexadecimal digits.
+/// The line of a row in FILE.sums: the row's CRC-32 (as in zlib and gzip) in hexadecimal digits,
+/// and a line feed.
 /// @param row without the line feed
 std::string SumLine(std::string_view row);
-/// Number of bytes of the line of a row.
+/// Number of bytes of the result of SumLine().
 inline constexpr std::int64_t kSumLineBytes = 9;
 
 /// Whether a file has only checksums of rows. The last line may be incomplete, because a kill or a

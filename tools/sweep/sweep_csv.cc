@@ -142,7 +142,7 @@ void SweepFile::Start(const Shard& shard) {
 void SweepFile::Resume(const Shard& shard) {
   const std::int64_t all_rows =
       (plan_.ShardEnd(shard) - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
-  // Reads line by line, so that memory does not depend on the size of the file.
+  // The file is read line by line, so that the memory does not depend on the size of the file.
   std::ifstream in(path_, std::ios::binary);
   RowChecker checker(path_);
   std::string line;

@@ -18,11 +18,12 @@ namespace fogline::sweep {
 class SweepFile {
  public:
   /// Opens the file of a shard. The file is new, or the same sweep has written a part of it. An
-  /// incomplete end of the file is cut off. With `force` the file of any sweep is replaced, but a
-  /// file that is not a sweep's is never replaced.
-  /// @throws InputError if the file does not belong to a sweep or (without `force`) not to this
-  /// sweep, if another process is writing it, if it cannot be opened, or as
-  /// RefuseForeignSideFiles(); std::runtime_error if a write fails
+  /// incomplete unit at the end of the file is cut off. With `force` the file of any sweep is
+  /// replaced, but a file that is not of a sweep is never replaced.
+  /// @throws InputError if the file is not of a sweep; if it is of another sweep and `force` is
+  /// false; if one of its rows is not the row that this sweep writes; if another process is writing
+  /// the file; if the file cannot be opened; or as RefuseForeignSideFiles(). std::runtime_error if
+  /// a write fails
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 

@@ -23,9 +23,9 @@ namespace fogline::sweep {
 
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
-  /// Adds the runs of one seed: the measures of the run, the measures of the run and its paired
-  /// run, and the effect of the fog in the paired run. SI may be missing, because it needs
-  /// compromised safety in the paired run. RHE may be missing, because it needs clear air.
+  /// Adds the results of one seed: the measures of the run, the measures that compare the run with
+  /// its paired run, and the effect of the fog in the paired run. SI may be missing, because it
+  /// needs compromised safety in the paired run. RHE may be missing, because it needs clear air.
   void Add(const metrics::RunMetrics& measures, const metrics::PairedMetrics& paired,
            const metrics::FogEffect& without) {
     const auto add = [](const std::optional<double>& value, stats::Statistics& to) {

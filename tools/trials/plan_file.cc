@@ -55,8 +55,8 @@ class PlanCheck {
     mistakes_.Add(FindPlace(root_, pointer), pointer, rule, std::move(message));
   }
 
-  /// Checks the length of a text that is a part of each fact of a trial, or of each answer
-  /// (trial_t). Names have a smaller limit.
+  /// Checks the length of a text that is in every TRIAL message (trial_t) of a trial, or in every
+  /// TRIAL message with an answer. Names have a smaller limit (CheckName()).
   void CheckFitsLog(const std::string& pointer, const std::string& text) {
     if (text.size() <= runtime::kMostTrialNameBytes) return;
     Add(pointer, "text",
@@ -204,7 +204,8 @@ class ScenarioCheck {
                   : condition + "/scenario";
     what += mistake.message;
     // A mistake in the scenario file itself does not depend on the changes of a condition, so it is
-    // reported only once. Whether a run is impossible depends on these changes, too.
+    // reported only once. A mistake of the rule "impossible" depends on these changes, too, so it
+    // is reported for each condition.
     const bool is_of_file = !is_change && mistake.rule != "impossible";
     if (is_of_file && !in_files_.insert(what).second) return;
     Keep(pointer, mistake.rule, std::move(what),

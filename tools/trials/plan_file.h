@@ -29,12 +29,12 @@ struct PlanFile {
 ///     scenarios. A mistake in a scenario's file is reported at the first condition with this file
 PlanFile LoadPlan(const std::filesystem::path& file);
 
-/// Says why trials with this scenario cannot be made at this speed. "" if they can.
+/// The reason why trials with this scenario cannot run at this speed; "" if they can.
 /// @param speed simulated seconds per second
 std::string WhyNotAt(double speed, const Scenario& scenario);
 
 /// The scenario of a condition.
-/// @param more overrides that prevail over those of the condition
+/// @param more overrides that are applied after those of the condition
 /// @throws InputError that names the experiment's file and the condition
 Scenario LoadCondition(const PlanFile& file, const ConditionSection& condition,
                        const std::vector<std::string>& more = {});

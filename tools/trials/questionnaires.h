@@ -9,7 +9,8 @@
 
 namespace fogline::trials {
 
-/// The questionnaire with its questions: those of its file, or those of a standard. The questions
+/// The questionnaire with its questions. If it has the kind "own", these are the questions of the
+/// experiment's file. Otherwise they are the questions of a standard questionnaire. The questions
 /// of a standard are short labels of Fogline, and not the published wording:
 /// - nasa_tlx: the six scales of the NASA Task Load Index (Hart & Staveland 1988), from 0 to 100 in
 ///   steps of 5. Fogline leaves out the weights of the original. This form is called Raw TLX (Hart

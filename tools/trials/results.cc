@@ -25,8 +25,8 @@ bool HasBegun(const std::filesystem::path& log) {
   }
 }
 
-/// Whether a folder has files that are not temporary. Another session may be writing a temporary
-/// file.
+/// Whether a folder has files. Temporary files do not count, because another session may be writing
+/// them.
 /// @throws InputError if the folder cannot be read
 bool HasOtherFiles(const std::filesystem::path& folder) {
   std::error_code failed;
@@ -41,9 +41,9 @@ bool HasOtherFiles(const std::filesystem::path& folder) {
       fmt::format("{}: error: --results: cannot read: {}", PathText(folder), failed.message()));
 }
 
-/// Whether a log without facts has a run that this trial could have made: in real time, of the
-/// trial's scenario. A log without facts remains if a crash comes after a run, and the network has
-/// lost all facts of the run.
+/// Whether a log without facts (TRIAL messages) can be a log of this trial: its run is in real
+/// time, and its scenario is the scenario of the trial. A log has no facts if the network has lost
+/// all facts of the run, and the session crashed after the run, before it added them to the log.
 bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
   if (!story.scenario || story.speed <= 0) return false;
   std::vector<std::string> seed;
@@ -58,8 +58,9 @@ bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story)
   }
 }
 
-/// Says why a log is not of this trial: its facts name another trial or another version of the
-/// experiment, or its run is another one. "" if the log is of this trial.
+/// The reason why a log is not of this trial: its TRIAL messages (facts) name another trial or
+/// another version of the experiment, or its run is not a run of this trial. "" if the log is of
+/// this trial.
 std::string WhyForeign(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
   if (story.facts.empty()) {
     const bool may_be = story.state == TrialState::kBroken || HasRunOf(plan, trial, story);
@@ -89,7 +90,9 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
         fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
   }
   if (!HasOtherFiles(folder_)) return;
-  // The program looks for this file last, because another session may just have created it.
+  // This check comes after HasOtherFiles(). Another session may create files at the same time, and
+  // creates experiment.json first. So if HasOtherFiles() has seen files of that session, this check
+  // finds experiment.json.
   if (!std::filesystem::exists(Kept(), missing)) {
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));
@@ -147,7 +150,7 @@ TrialRecord Results::Read(const Trial& trial) const {
   record.story.state = TrialState::kOpen;
   std::error_code missing;
   while (std::filesystem::exists(LogOf(trial, record.attempts + 1), missing)) ++record.attempts;
-  // A crash before the first step leaves a log without steps.
+  // A crash before the first step leaves a log without steps. Such an attempt does not count.
   while (record.attempts > 0 && !HasBegun(LogOf(trial, record.attempts))) --record.attempts;
   if (record.attempts == 0) return record;
   record.log = LogOf(trial, record.attempts);

@@ -1,7 +1,7 @@
 // The folder with the logs of an experiment. Each trial has a log of its own, which is never
 // overwritten:
 //
-//   experiment.json                              the experiment's file, as it was when it began
+//   experiment.json                              the experiment's file, as it was at the beginning
 //   participant-03/practice-1-clear.lcm
 //   participant-03/trial-2-fog.lcm
 //   participant-03/trial-2-fog-attempt-2.lcm     the first run of this trial broke off
@@ -41,8 +41,8 @@ class Results {
 
   /// Creates the folder, and copies the experiment's file into it. @throws InputError
   void Create() const;
-  /// Does the same as Create(). Then creates the folder of a participant, and locks it for a
-  /// session. @throws InputError
+  /// Calls Create(). Then creates the folder of a participant, and locks it for a session.
+  /// @throws InputError
   std::unique_ptr<FileLock> Begin(std::int64_t participant) const;
 
   const std::filesystem::path& folder() const { return folder_; }

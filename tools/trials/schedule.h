@@ -14,7 +14,7 @@ namespace fogline::trials {
 struct Trial {
   std::int64_t participant = 1;
   bool practice = false;
-  std::int64_t number = 1;  // place in the order; practice runs are counted separately
+  std::int64_t number = 1;  // position in the order, from 1; practice runs are counted separately
   std::size_t index = 0;    // index of its condition in `practice` or `conditions`
   std::int64_t seed = -1;   // -1: the seed of the condition's scenario
 };

@@ -159,8 +159,8 @@ class Session {
     });
   }
 
-  /// Adds facts after the last fact of the log. Even after a crash, the log has all of them or
-  /// none.
+  /// Adds facts after the last fact of the log. Even after a crash, the log has all of these facts
+  /// or none of them.
   void Add(TrialRecord& record, std::vector<trial_t> facts) const {
     const auto& known = record.story.facts;
     std::int64_t next = known.empty() ? 0 : known.back().sequence + 1;

@@ -1,6 +1,6 @@
-// A session: it makes the trials of one participant that are not done, asks the questions after
-// each trial, and writes the answers into the trial's log. If a session was killed, the next
-// session begins with the first trial that is not done.
+// A session: makes the missing trials of one participant, asks the questions after each trial, and
+// writes the answers into the trial's log. If a session was killed, the next session begins with
+// the first trial that is not done.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,8 @@ struct SessionOutcome {
 
 /// Makes the trials of a participant that are not done.
 /// @pre the caller holds the lock of results.Begin() for this participant
-/// @throws Interrupted; std::runtime_error if a run fails. The next session continues from there
+/// @throws Interrupted; std::runtime_error if a run fails. The next session begins with the trial
+///     that was interrupted or that failed
 SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
                           Desk& desk);
 

@@ -16,7 +16,8 @@
 namespace fogline::trials {
 namespace {
 
-// A marker waits at most this long before it is sent. A person does not notice this time.
+// A marker (a note of the experimenter) waits at most this long before it is sent. A person does
+// not notice this time.
 constexpr Duration kSendEvery = milliseconds(10);
 
 }  // namespace

@@ -32,8 +32,9 @@ class Speaker {
   /// from any thread.
   void Mark(const std::string& text);
 
-  /// Ends the thread. @return every fact so far, at least BEGIN; a fact may be missing in the log,
-  /// because a network can lose messages
+  /// Ends the thread.
+  /// @return every fact so far, at least BEGIN; the log may lack some of these facts, because a
+  ///     network can lose messages
   std::vector<trial_t> End();
 
  private:

@@ -82,7 +82,7 @@ TrialStory ReadStory(const std::filesystem::path& log) {
 
 std::string FaultText(const std::filesystem::path& log, const TrialStory& story) {
   const std::string path = PathText(log);
-  // The note of an unreadable log begins with the log's path.
+  // The note of an unreadable log already begins with the log's path.
   return story.note.starts_with(path) ? story.note : path + ": " + story.note;
 }
 

@@ -6,15 +6,17 @@ namespace fogline::trials {
 
 std::vector<std::vector<std::size_t>> WilliamsDesign(std::size_t conditions) {
   const std::size_t n = conditions;
-  // The first order zigzags from both ends to the middle: 0, 1, n - 1, 2, n - 2 ... If n is even,
-  // all differences (modulo n) between neighbours in this order are distinct. If n is odd, this
-  // order and the reversed order together have each difference twice.
+  // The first order alternates between both ends: 0, 1, n - 1, 2, n - 2 ... If n is even, all
+  // differences (modulo n) between neighbours in this order are distinct. If n is odd, this order
+  // and the reversed order together have each difference twice.
   std::vector<std::size_t> zigzag;
   for (std::size_t place = 0; place < n; ++place) {
     zigzag.push_back(place % 2 == 1 ? (place + 1) / 2 : (n - place / 2) % n);
   }
   std::vector<std::vector<std::size_t>> orders;
-  // Adding a number modulo n to all conditions keeps the differences, and makes a Latin square.
+  // Each order adds its own number (modulo n) to all conditions of the first order. So all orders
+  // have the same differences between neighbours, and each condition comes once at each place (a
+  // Latin square).
   for (std::size_t shift = 0; shift < n; ++shift) {
     std::vector<std::size_t> order;
     for (const std::size_t condition : zigzag) order.push_back((condition + shift) % n);

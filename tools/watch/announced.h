@@ -11,10 +11,12 @@
 
 namespace fogline::watch {
 
-/// One line for each run. @param followed whether the view shows the first run
+/// One line for each of the first eight runs. If there are more runs, a last line says how many.
+/// @param followed whether the view shows the first run of `runs`
 std::vector<Line> AnnouncedLines(const std::vector<runtime::Announcement>& runs, bool followed);
 
-/// The runs as a list of objects. @param followed whether the view shows the first run
+/// The runs as a list of objects.
+/// @param followed whether the view shows the first run of `runs`
 nlohmann::ordered_json AnnouncedJson(const std::vector<runtime::Announcement>& runs, bool followed);
 
 /// The roles that wait for a run as a list of objects.

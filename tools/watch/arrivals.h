@@ -13,7 +13,7 @@ namespace fogline::watch {
 /// successive arrivals.
 struct ArrivalView {
   std::int64_t messages = 0;            // number of all messages so far
-  double rate_hz = 0;                   // messages of the interval / its length
+  double rate_hz = 0;                   // messages in the interval, divided by its length
   double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
   std::optional<double> jitter_s;       // of the gaps that end in the interval; needs two gaps
   std::optional<double> longest_gap_s;  // longest gap that ends in the interval; nullopt if none

@@ -12,8 +12,8 @@ namespace {
 // Interval at which the program checks whether another run should be followed. A shorter interval
 // would cost too much time, because opening a network takes time.
 constexpr Duration kFollowEvery = milliseconds(100);
-// After this many unknown channel names, the network of the URL is closed and opened again, because
-// LCM's library stores every name.
+// LCM's library stores every channel name. So after this many messages on channels with unknown
+// names, the program closes the network of the URL and opens it again, to forget the names.
 constexpr std::int64_t kMostNames = 10'000;
 // The program remembers at most this many announced runs whose networks are unreachable.
 constexpr std::size_t kMaxUnreachable = 64;
@@ -30,7 +30,8 @@ FollowedNetwork::FollowedNetwork(std::string url, Following following,
       }) {
   Open();
   if (following_ != Following::kNothing) listener_.emplace(network_->bus.url());
-  // Within this time every run has announced itself, so the first run to follow is the newest.
+  // Every run announces itself at least once in kBeaconEvery. So the program waits a little longer
+  // than this before it looks for a run. It then knows all runs, and follows the newest one.
   if (following_ == Following::kFirstRun) {
     follow_at_ = Clock::now() + runtime::kBeaconEvery + kFollowEvery;
   }
@@ -44,7 +45,8 @@ FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Wa
 
 bool FollowedNetwork::Network::Drain(TimePoint now) {
   bus.Drain();
-  // The bus comes first: the tap then takes the packets of all messages that the bus has handled.
+  // The bus is read before the tap. So the tap takes the packets of all messages that the bus has
+  // handled.
   if (tap) tap->Drain(now);
   return bus.replaced() != std::exchange(replaced, bus.replaced());
 }
@@ -68,9 +70,9 @@ std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
 void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   if (unknown - names_ < kMostNames) return;
   names_ = unknown;
-  // Only the network of the URL can collect names. On the network of a followed run, LCM's library
-  // does not receive: runs on networks where it receives are not announced
-  // (runtime::MayBeAnnounced()).
+  // Only LCM's library collects names. It may receive on the network of the URL, but not on the
+  // network of a followed run: a run is announced only if LCM's library does not receive on its
+  // network (runtime::MayBeAnnounced()).
   if (network_->bus.LcmReceives()) Open();
 }
 

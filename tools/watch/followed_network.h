@@ -30,7 +30,7 @@ class FollowedNetwork {
   /// not report the messages that still wait.
   static constexpr Duration kLookEvery = milliseconds(50);
 
-  /// @param watcher gets every message, except LCM's own and beacons
+  /// @param watcher gets every message except those on the channels of IsHousekeeping()
   /// @throws InputError, std::runtime_error like Bus()
   FollowedNetwork(std::string url, Following following, runtime::Bus::Watcher watcher);
 
@@ -41,7 +41,7 @@ class FollowedNetwork {
   /// Closes the network of the URL and opens it again, if LCM's library receives its messages
   /// (Bus::LcmReceives()) and has stored too many channel names. Meanwhile, for some milliseconds,
   /// the watcher misses messages.
-  /// @param unknown messages so far on channels whose names were unknown
+  /// @param unknown number of messages so far on channels with unknown names
   void ForgetNames(std::int64_t unknown);
 
   /// The descriptors to wait for; -1 for a network that is not open. They are valid until the next
@@ -101,7 +101,7 @@ class FollowedNetwork {
   std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
   std::vector<runtime::Announcement> runs_;
   std::optional<runtime::Announcement> run_;  // the followed run
-  std::optional<Network> followed_;           // its network, if this is another one than network_
+  std::optional<Network> followed_;           // the network of this run, if it is not network_
   std::vector<std::int64_t> unreachable_;     // ids of runs whose networks could not be opened
   TimePoint follow_at_{};
   std::string tap_trouble_;

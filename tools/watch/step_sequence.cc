@@ -71,7 +71,8 @@ void StepSequence::StartAt(std::int64_t step) {
 
 void StepSequence::MoveTo(std::int64_t newest) {
   const std::int64_t by = newest - counts_.newest;
-  // The loop visits the steps that leave the window, and the steps that the sequence jumps over.
+  // The loop visits the steps that leave the window, and the skipped steps that are older than the
+  // new window. A step that was not seen counts as lost.
   for (std::int64_t step = std::max(first_, counts_.newest - kWindow + 1); step <= newest - kWindow;
        ++step) {
     const std::int64_t age = counts_.newest - step;

@@ -30,13 +30,13 @@ class StepSequence {
   static constexpr std::int64_t kWindow = runtime::kRingSteps;
   /// No run has this many steps. Below this limit, the arithmetic of this class does not overflow.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
-  /// A step that is further ahead than this counts only if the next new step is its successor. The
-  /// rule and the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC
-  /// 3550, appendix A.1). The skipped steps are not counted as lost, because it is unknown whether
-  /// they were ever sent.
+  /// A step that is further ahead than this counts as stray. If the next new step is its successor,
+  /// the sequence starts again at this successor. This rule and the number (MAX_DROPOUT) are from
+  /// the algorithm for sequence numbers of RTP (RFC 3550, appendix A.1). The skipped steps are not
+  /// counted as lost, because it is unknown whether they were ever sent.
   static constexpr std::int64_t kMaxJump = 3000;
-  /// If no new step has come for this long, a step that is older than the window restarts the
-  /// sequence. This happens when a log is played twice.
+  /// If no new step has come for this long, a step that is older than the last kWindow steps
+  /// restarts the sequence. This happens when a log is played twice.
   static constexpr Duration kBeginsAgain = milliseconds(1000);
 
  private:

@@ -64,9 +64,10 @@ struct TrafficView {
                                     // of room
 };
 
-/// Whether a channel carries no traffic of programs. Such channels are LCM's own (the self-test of
-/// the network, and the announcements of ports by mpudpm), the channels of beacons and of waiting
-/// roles, and the channels of `fogline doctor`.
+/// Whether the messages of a channel only organise or test the network. The tools do not show or
+/// record such messages as traffic. These channels are LCM's own (the self-test of the network, and
+/// the announcements of ports by mpudpm), the channels of beacons and of waiting roles, and the
+/// channels of `fogline doctor`.
 bool IsHousekeeping(std::string_view channel);
 
 /// Statistics of all messages that arrive. The memory is bounded for any input: if there is no

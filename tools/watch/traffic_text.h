@@ -1,4 +1,4 @@
-// A TrafficView as text for people: lines that fit into a window.
+// A TrafficView as lines of text for people, and as JSON for programs.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct Line {
   Style style = Style::kPlain;
 };
 
-/// The view as a table. In text from the network, each character other than ASCII letters, digits,
-/// signs and spaces is printed as '?'. So no sender can send commands to the terminal.
+/// The view as a table. In text from the network, each byte other than ASCII letters, digits,
+/// punctuation and spaces is printed as '?'. So no sender can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
 /// The first line of TrafficLines(): the network, and its traffic in the last interval.

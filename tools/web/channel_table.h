@@ -21,12 +21,12 @@ struct KnownChannel {
   std::string type;  // "": unknown, because it is not a type of Fogline
 };
 
-/// The number of each channel. The number of a channel of the graph is its index in kChannels.
-/// Other channels get the next numbers in the order of their first messages.
+/// The number of each channel. The number of a channel in kChannels (services/graph.h) is its index
+/// there. Other channels get the next numbers in the order of their first messages.
 class ChannelTable {
  public:
-  /// Limit for the channels outside the graph. It is needed because any program on the network can
-  /// invent names.
+  /// Limit for the channels that are not in kChannels. It is needed because any program on the
+  /// network can invent names.
   static constexpr std::size_t kMostOthers = 4096;
 
   /// Returns the number of a channel. Adds the channel if it is new.
@@ -34,7 +34,7 @@ class ChannelTable {
   /// @return nullopt if the channel is new and there are too many channels
   std::optional<ChannelId> IdOf(std::string_view name, runtime::Bytes bytes);
 
-  /// The channels outside the graph, in the order of their numbers.
+  /// The channels that are not in kChannels, in the order of their numbers.
   const std::vector<KnownChannel>& others() const { return others_; }
 
  private:

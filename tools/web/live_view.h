@@ -1,4 +1,4 @@
-// Shows the run on the network to the clients of a server. It subscribes to all channels, and
+// Shows the run on the network to the clients of a server. The view subscribes to all channels, and
 // publishes nothing.
 #pragma once
 
@@ -31,7 +31,7 @@ struct LiveOptions {
   std::string url;
   bool follows = false;                    // whether to follow announced runs
   std::optional<std::int64_t> run;         // if set, only this run is shown
-  std::optional<runtime::SigningKey> key;  // if set, messages without its signature are not shown
+  std::optional<runtime::SigningKey> key;  // if set, only messages signed with it are shown
   bool waits_for_person = false;           // whether the run begins when a person is in the seat
 };
 
@@ -41,18 +41,18 @@ class LiveView final : public View {
   static constexpr std::uint64_t kMostBehind = SendQueue::kMostBytes;
   static constexpr Duration kHealthEvery = milliseconds(250);
 
-  /// Listens while the context runs.
+  /// Listens to the network while `context` runs.
   /// @throws InputError, std::runtime_error like runtime::Bus()
   LiveView(boost::asio::io_context& context, LiveOptions options);
 
   /// Sets the server whose counts (viewers, cut off, refused) the clients get in `health`. The
   /// server must exist until Stop().
   void Show(const Server& server) { server_ = &server; }
-  /// From now on, passes each message on a channel of the graph to `teller`, too, after tracker()
-  /// has handled the message. An empty `teller` ends this.
+  /// From now on, `teller` also gets each message on a channel of the graph. tracker() handles the
+  /// message first. An empty `teller` stops this.
   using Teller = std::function<void(const RingMessage& message)>;
   void TellMessages(Teller teller) { teller_ = std::move(teller); }
-  /// Ends the work of this view in the context.
+  /// Stops the timers of this view, and stops listening to the network.
   void Stop();
 
   void Opened(Client& client) override;
@@ -64,7 +64,7 @@ class LiveView final : public View {
   const RunTracker& tracker() const { return tracker_; }
 
  private:
-  /// A client, and its place in ring_: the position behind the last message that was sent to it.
+  /// A client, and its place in ring_: the position after the last message that was sent to it.
   struct Viewer {
     Client* client = nullptr;
     std::uint64_t place = 0;
@@ -72,8 +72,8 @@ class LiveView final : public View {
     std::int64_t sent = 0;                      // number of history messages sent so far
     std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
   };
-  /// Number of statistics. Each of them covers one second, and one of them ends every 250 ms. So
-  /// every health message has the numbers of a whole second.
+  /// Number of statistics. Each of them covers one second. Every 250 ms one of them ends and begins
+  /// again. So every health message has the numbers of a whole second.
   static constexpr std::size_t kTurns = 4;
 
   void Hear(std::string_view channel, runtime::Bytes bytes);
@@ -88,7 +88,7 @@ class LiveView final : public View {
   void Translate(Viewer& viewer, std::string_view messages);
   void TellNews();
   void TellChannel(const KnownChannel& channel);
-  /// Names on stderr the runs and messages that cannot be shown.
+  /// Prints on stderr which runs and messages cannot be shown.
   void NameTrouble(const watch::SendersView& senders);
   /// Sends a text to the clients that speak our own protocol.
   void SendToAll(std::string text);
@@ -106,7 +106,7 @@ class LiveView final : public View {
   const bool waits_for_person_;
   Teller teller_;
   std::int64_t told_run_ = 0;
-  std::int64_t named_scenarios_ = 0;  // number of refused scenarios named on stderr
+  std::int64_t named_scenarios_ = 0;  // number of refused scenarios reported on stderr
   std::size_t named_fragmented_ = 0;  // number of channels with too large messages named on stderr
   LineBudget lines_{"fogline-web"};
   std::int64_t unverified_ = 0;

@@ -12,7 +12,7 @@
 
 namespace fogline::web {
 
-/// A message in the form that the ring and frames of kind 1 have.
+/// A message in the ring. Each message in a frame of kind 1 (docs/view.md) has the same members.
 struct RingMessage {
   std::uint16_t channel = 0;
   double wall_ms = 0;  // wall clock of its arrival, in ms since 1970
@@ -30,7 +30,7 @@ class MessageRing {
 
   void Add(const RingMessage& message);
 
-  /// The place of the oldest message, and the place behind the newest message. A place is a number
+  /// The place of the oldest message, and the place after the newest message. A place is a number
   /// of bytes since the first message. Places never decrease.
   std::uint64_t begin() const { return chunks_.empty() ? end_ : chunks_.front().begin; }
   std::uint64_t end() const { return end_; }
@@ -56,7 +56,7 @@ class MessageRing {
   std::uint64_t end_ = 0;
 };
 
-/// Adds a message to a text of messages in the form of From().
+/// Appends a message to `messages`, in the form that From() describes.
 void AddRingMessage(const RingMessage& message, std::string& messages);
 
 /// Removes the first message from a text that From() has returned. @pre the text is not empty

@@ -55,8 +55,9 @@ async function window(t, started, file) {
     foglinePage.log.events.findLast(({text}) => text === "transfer to the human").step));
   await goTo(page, step + 3);
   await page.waitForFunction(() => foglinePage.scene.view && foglinePage.curves.charts.length > 0);
-  // The picture ends where the health of the run begins. Otherwise the time bar would cover the
-  // health.
+  // The time bar stays at the bottom of the window. With this height of the window, the time bar
+  // begins where the section `health` begins. So it covers nothing of the sections above, and the
+  // picture shows no part of `health`.
   const height = await page.evaluate(() => Math.ceil(
     document.getElementById("health").offsetTop + document.getElementById("timebar").offsetHeight));
   await page.setViewportSize({width: WIDTH, height});
@@ -74,7 +75,8 @@ async function drive(t, started, file) {
   const page = await open(t, started, address, {size: {width: WIDTH, height: 850}, ...SCHEME});
   await begin(page);
   await drives(page, true);
-  // The page stops at this moment, because a busy machine may need seconds for the picture.
+  // A busy machine may need seconds for the picture. The countdown must not go on in this time. So
+  // the page takes no more messages as soon as the text of the time left begins with 9.
   await page.waitForFunction(() => {
     const isThere = document.getElementById("request-left").textContent.startsWith("9");
     if (isThere) foglineDrive.take = () => {};
@@ -91,8 +93,8 @@ async function drive(t, started, file) {
 }
 
 /**
- * Begins the next run at the participant's page, and waits for its questions. @param during is
- * called during the run
+ * Begins the next run at the participant's page, and waits for its questions.
+ * @param during is called during the run
  */
 async function makeRun(page, during = async () => {}) {
   await page.click("#begin");

@@ -1,6 +1,6 @@
 // The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
 // emergency braking, collisions. A live run and its log give the same events. If messages are
-// missing, only the steps that the text of an event names may differ.
+// missing, the two may differ only in the steps that the text of an event names.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 namespace fogline::web {
 
 struct RunEvent {
-  std::size_t number = 0;  // place among the events of the run, from 0
+  std::size_t number = 0;  // index among the events of the run
   std::int64_t step = 0;
   double time_s = 0;
   std::string_view
@@ -27,9 +27,9 @@ struct RunEvent {
 
 /// Finds the events. Takes the messages of a run in the order of their steps. Messages may be
 /// missing. A message that comes again, or too late, is ignored. The first message may be of a step
-/// after step 0, as in a run that is joined later. The fog, alarm or collision in this message is
-/// then no event, because it may have begun before. If messages before an event are missing, the
-/// text of the event names the steps in which the event may have happened.
+/// after step 0, for example if a live view starts during the run. The fog, alarm or collision in
+/// this message is then no event, because it may have begun before. If messages before an event are
+/// missing, the text of the event names the steps in which the event may have happened.
 class RunEvents {
  public:
   /// Limit for the stored events. A Degree of Conflict (DoC) that moves around its threshold causes
@@ -37,8 +37,8 @@ class RunEvents {
   static constexpr std::size_t kMost = 5000;
 
   /// Sets whether a step may have no command although no message is lost, as in real time. If so,
-  /// an event in a command happened in the step of this command. The setting applies to commands
-  /// that are added afterwards.
+  /// an event that a command shows counts as an event of the step of this command, even if the
+  /// steps before have no command. The setting applies to commands that are added afterwards.
   void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
   /// Sets the section of the run's scenario that says whether a person drives. The texts of earlier
   /// events change, too, because a viewer may get the scenario after the first steps.

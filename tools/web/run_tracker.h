@@ -43,10 +43,11 @@ class RunTracker {
   std::int64_t refused_scenarios() const { return refused_scenarios_; }
   /// The events of the followed run so far.
   const std::vector<RunEvent>& events() const { return events_.events(); }
-  /// Number of later events of the run, which events() does not have (RunEvents::kMost).
+  /// Number of later events that events() lacks, because it has at most RunEvents::kMost events.
   std::size_t events_left_out() const { return events_.left_out(); }
-  /// The events since the last call. The list begins again with each new run, and when a run is
-  /// played again. When the scenario of a run is complete, all events of this run come once more.
+  /// The events since the last call. After a new run has begun, or a run is played again, the list
+  /// begins with the first event of this run. When all parts of the scenario have come, all events
+  /// of the run come once more, because their texts may depend on the scenario.
   std::vector<RunEvent> TakeEvents();
 
  private:

@@ -46,11 +46,11 @@ std::string EventText(const RunEvent& event);
 std::string HistoryText(RequestId id, std::int64_t messages);
 std::string ErrorText(std::optional<RequestId> id, std::string_view message);
 
-/// A frame of kind 1. @param messages in the form of MessageRing::From()
+/// A frame of FrameKind::kMessages. @param messages in the form of MessageRing::From()
 std::string MessagesFrame(std::string_view messages);
-/// A frame of kind 2 with all messages of these steps.
+/// A frame of FrameKind::kSteps with all messages of the requested steps.
 std::string StepsFrame(const StepsRequest& request, const LogIndex& index);
-/// A frame of kind 3.
+/// A frame of FrameKind::kSeries.
 std::string SeriesFrame(RequestId id, const Series& series);
 
 }  // namespace fogline::web

@@ -11,7 +11,7 @@ namespace fogline::web {
 
 using RequestId = std::uint32_t;
 
-/// Requests all messages of some steps of a log.
+/// A request for all messages of some steps of a log.
 struct StepsRequest {
   RequestId id = 0;
   std::int64_t from = 0;
@@ -20,7 +20,7 @@ struct StepsRequest {
   static constexpr std::int64_t kMostSteps = 512;
 };
 
-/// Requests a field of a log over time.
+/// A request for a field of a log over time.
 struct SeriesRequest {
   RequestId id = 0;
   std::string channel;
@@ -28,12 +28,12 @@ struct SeriesRequest {
   std::int64_t from = 0;
   std::int64_t to = 0;
   std::int64_t points = 0;
-  bool changes = false;  // whether only the values that differ from the one before are wanted
+  bool changes = false;  // whether to send only values that differ from the value before
 
   static constexpr std::int64_t kMostPoints = 20'000;
 };
 
-/// Requests the messages of a live network that came before the request.
+/// A request for the messages of a live network that came before the request.
 struct HistoryRequest {
   RequestId id = 0;
 };
@@ -51,7 +51,7 @@ std::optional<RequestId> IdOf(const ViewRequest& request);
 
 /// Reads a request. Never throws: a wrong text becomes a BadRequest.
 ViewRequest ParseViewRequest(std::string_view text);
-/// The same for any frame. A binary frame is a BadRequest.
+/// Reads a request from any frame. A binary frame becomes a BadRequest.
 ViewRequest ParseViewFrame(std::string_view bytes, bool binary);
 
 }  // namespace fogline::web

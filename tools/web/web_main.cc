@@ -1,5 +1,5 @@
-// fogline view, a program of its own: shows the run on the network, or a log, in a browser. Without
-// --seat it never sends a message to a run.
+// The program of the verb `fogline view`. It shows the run on the network, or a log, in a browser.
+// Without --seat it never sends a message to a run.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>

@@ -1,5 +1,6 @@
-// Finds several distinct sets of values for a scenario's free fields. Each set meets a target table
-// over the seeds of the search, and also over fresh seeds. The search does not use the fresh seeds.
+// Finds several distinct sets of values for a scenario's free fields. With each set, the scenario's
+// table (SI and RHE at several thresholds) is close to a target table. This holds over the seeds of
+// the search, and also over fresh seeds, which the search does not use.
 #pragma once
 
 #include <vector>
@@ -9,7 +10,8 @@
 
 namespace fogline::calibrate {
 
-/// One set of values, and its tables over the seeds of the search and over the fresh seeds.
+/// One set of values. `searched` is the scenario's table over the seeds of the search, and `fresh`
+/// is its table over the fresh seeds.
 struct ParameterSet {
   std::vector<double> values;  // of the free fields
   Evaluation searched;

@@ -14,15 +14,18 @@ namespace fogline::calibrate {
 std::string WithSchemaIn(const std::filesystem::path& to, const std::filesystem::path& from,
                          std::string text);
 
-/// The folder of an ensemble. The constructor makes the folder before the long search. The
-/// destructor removes a new folder that is still empty.
+/// The folder of an ensemble. It is constructed before the search for the sets. The search takes
+/// long, so a folder that cannot be written must be an error before it. The destructor removes a
+/// new folder that is still empty.
 class EnsembleFolder {
  public:
   /// @throws InputError if the folder cannot be written, or if it has sets and `force` is false
   EnsembleFolder(std::filesystem::path folder, bool force);
 
-  /// Writes set-1.json and so on, made from `text`, and sets.csv. Removes all other sets, because
-  /// they belong to an earlier ensemble. @throws std::runtime_error when the disk is full
+  /// Removes all sets of an earlier ensemble from the folder. Then writes set-1.json and so on, and
+  /// sets.csv.
+  /// @param text the text of the scenario's file, from which each set's file is made
+  /// @throws std::runtime_error when the disk is full
   void Write(const EnsembleReport& report, const std::string& text) const;
 
  private:

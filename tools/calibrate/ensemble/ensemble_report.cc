@@ -36,7 +36,9 @@ struct QuantityLine {
   std::string_view unit;
   std::string lowest;  // bounds of a free field
   std::string highest;
-  std::string kind;  // scale of a free field (linear or log), or "derived", or the seeds
+  // For a free field: its scale, "linear" or "log". For a field that follows from the free fields:
+  // "derived". For SI, RHE and the distance from the target: the seeds, such as "1:100".
+  std::string kind;
   std::vector<double> values;
 };
 

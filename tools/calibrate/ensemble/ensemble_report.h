@@ -1,5 +1,5 @@
-// An ensemble of parameter sets as scenario files, as a table for people and for spreadsheets, and
-// as JSON for programs.
+// Makes the texts of an ensemble of parameter sets: scenario files, a table for people, the same
+// table as CSV, and JSON for programs.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,14 @@ std::string WithOrigin(const EnsembleReport& report, std::size_t index, std::str
 /// The text of a set's file: WithOrigin() with the values of the set.
 std::string SetText(const EnsembleReport& report, std::size_t index, std::string_view text);
 
-/// The outcome of the searches in two lines, such as "8 of 8 sets ...".
+/// The outcome of the searches in two lines, such as "8 of 8 sets ...". If there are several sets,
+/// a third line has the least distance of two sets.
 std::string EnsembleSummary(const EnsembleReport& report);
 
-/// The summary and a table. The table has a line for each field and for each number of the sets'
-/// tables, and a column for each set.
+/// The scenario's title, the summary and, if there are sets, a table. The table has a column for
+/// each set. Its lines are the free and the derived fields, SI and RHE at each threshold, and the
+/// distance from the target. SI, RHE and the distance come twice: over the seeds of the search, and
+/// over the fresh seeds.
 std::string EnsembleText(const EnsembleReport& report);
 
 /// The table of EnsembleText() as CSV.

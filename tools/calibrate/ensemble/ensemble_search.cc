@@ -18,7 +18,8 @@ constexpr Stream kStarts{2000};
 
 // A search ends when the distance of its best point from the target is at most this share of the
 // largest allowed distance (EnsembleRules::within). The other half of the allowed distance is a
-// margin, because the distance over the fresh seeds is a little different.
+// margin: the point must then also meet the target over fresh seeds, which the search does not use.
+// Over these seeds the distance is a little different.
 constexpr double kEnough = 0.5;
 
 double Squared(double x) { return x * x; }
@@ -86,8 +87,8 @@ class PointSearch {
     return best;
   }
 
-  /// Adds the point that a search has found to the result, or counts the reason why it is not
-  /// added.
+  /// Adds to the result the point that a search has found, or counts the reason why the point is
+  /// not added.
   void Judge(const Valued& best) {
     EnsembleCounts& counts = result_.counts;
     if (best.value > Squared(rules_.within)) {

@@ -15,22 +15,24 @@ namespace fogline::calibrate {
 /// Input of a search. A point gives each field as a share of the field's range, in [0, 1].
 struct Landscape {
   std::size_t fields = 0;
-  /// Squared distance of a point's table from the target: `searched` over the seeds of the search,
-  /// `fresh` over fresh seeds. If one of them returns nullopt, the search stops.
+  /// Functions of a point. With the values of the point, a scenario has a table of SI and RHE. The
+  /// result is the squared distance of this table from the target table. `searched` computes the
+  /// table over the seeds of the search, and `fresh` over other seeds. If a function returns
+  /// nullopt, the search stops.
   FunctionOfShares searched;
   FunctionOfShares fresh;
-  /// Returns the point with the rounded values that a file contains. Each function has the same
-  /// value at the rounded point as at `shares`.
+  /// Returns the point of the rounded values. A file contains the values in this rounded form.
+  /// `searched` has the same value at the rounded point as at `shares`, and so has `fresh`.
   std::function<std::vector<double>(const std::vector<double>& shares)> rounded;
 };
 
 /// The requirements on an ensemble, and the limits of the search for it.
 struct EnsembleRules {
   int sets = 1;
-  /// A point meets the target if its distance from the target is at most this value, in the unit of
-  /// the target.
+  /// A point meets the target if its distance from the target is at most this value. The distance
+  /// is the square root of the value of Landscape::searched or Landscape::fresh.
   double within = 1;
-  /// Least distance (ShareDistance) between two points.
+  /// Least allowed distance (ShareDistance()) between two points.
   double apart = 0.2;
   /// Number of starting points, and largest number of evaluations in the search from each starting
   /// point.
@@ -68,10 +70,11 @@ double ShareDistance(std::span<const double> a, std::span<const double> b);
 /// equal parts of the range has one point.
 std::vector<std::vector<double>> LatinHypercube(int points, std::size_t fields, std::int64_t seed);
 
-/// Evaluates the starting points of a Latin hypercube. Then it searches around one starting point
-/// after the other, the best first. A point that a search finds is added to the result if it is
-/// distinct and also meets the target on fresh seeds. FindPoints() ends when it has enough points
-/// or no starting points are left. The result depends only on the landscape and the rules.
+/// Evaluates the starting points of a Latin hypercube. Then FindPoints() searches around one
+/// starting point after the other, the best first. A point that a search finds is added to the
+/// result if it is far enough from all points in the result (EnsembleRules::apart), and also meets
+/// the target over fresh seeds. FindPoints() ends when it has enough points or no starting points
+/// are left. The result depends only on the landscape and the rules.
 PointEnsemble FindPoints(const Landscape& landscape, const EnsembleRules& rules,
                          const EnsembleProgress& progress);
 

@@ -15,8 +15,8 @@
 namespace fogline::cli {
 namespace {
 
-/// The kind of the values of an option or argument. kKinds names the options and arguments whose
-/// check does not show the kind.
+/// The kind of the values of an option or argument. kKinds gives it by the name. For an option
+/// or argument that is not in kKinds, NamesIn() finds the values in its check or description.
 enum class Kind {
   kAssignment,  // a field of the scenario and its value, /fog/bias_m=0.3
   kPointer,     // a field or section of the scenario
@@ -87,14 +87,15 @@ std::vector<std::string> NamesIn(const CLI::Option& option) {
                                         : std::vector<std::string>();
 }
 
-/// The pointer of a field as a user may type it: index 0 replaces each `*` (all items of a list).
+/// The pointer of a field as a user may type it. In the catalogue, `*` stands for all items of a
+/// list. Index 0 replaces each `*`.
 std::string Typed(std::string pointer) {
   std::ranges::replace(pointer, '*', '0');
   return pointer;
 }
 
-/// Adds the fields whose pointers begin with `begun` and have no further "/". The pointer of a
-/// section or of a list ends with "/": "/arb" is completed to "/arbitrator/".
+/// Adds the fields whose pointers begin with `begun` and have no "/" after this beginning. The
+/// pointer of a section or of a list ends with "/": "/arb" is completed to "/arbitrator/".
 /// @param end the text after the pointer of a complete field, such as "="
 void AddPointers(const std::string& begun, std::string_view end, Completion& completion) {
   for (const Field& field : Catalogue()) {

@@ -9,9 +9,9 @@
 
 namespace fogline::cli {
 
-/// The values of an option or argument that begin with `begun`. The values are the names that its
-/// check allows, fields of the scenario, roles, transports or verbs. For any other text, the result
-/// suggests files.
+/// The values of an option or argument that begin with `begun`. The values are the names that the
+/// option's check allows, fields of the scenario, roles, transports or verbs. For the name of a
+/// file, or any other text, the result suggests files instead.
 /// @param app the program, which has the verbs
 Completion ValuesOf(const CLI::App& app, const CLI::Option& option, const std::string& begun);
 

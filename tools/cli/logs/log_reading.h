@@ -51,9 +51,9 @@ std::vector<std::string> UnknownMeasures(const runner::RunResult& result);
 /// known.
 std::string UnknownMeasuresText(const runner::RunResult& result);
 
-/// Names the unknown requests to take over of a run, and the unknown measures of requests, such as
-/// "the measures of take-overs"; "" if all requests and their measures are known, or if the run
-/// cannot have requests.
+/// A text that says which requests to take over, and which measures of requests, are unknown for a
+/// run, such as "the measures of take-overs". The text is "" if all requests and their measures are
+/// known, or if the run cannot have requests.
 std::string UnknownTakeOvers(const runner::LoggedRun& run);
 
 /// Prints on stderr which results of a run are unknown because its log has gaps.

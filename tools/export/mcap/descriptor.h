@@ -3,7 +3,7 @@
 //     lcmtypes                           | protobuf (proto3)
 //     -----------------------------------|-------------------------------------------------------
 //     struct fogline.truth_t             | message fogline.truth_t
-//     member                             | field of the same name; its number is its place, from 1
+//     member                             | field of the same name; numbered in order from 1
 //     int8_t, int16_t, int32_t; int64_t  | int32; int64
 //     byte; boolean                      | uint32; bool
 //     float; double; string              | float; double; string

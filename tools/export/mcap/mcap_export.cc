@@ -33,8 +33,8 @@ constexpr std::string_view kLibrary = "fogline";
 constexpr std::string_view kEncoding = "protobuf";
 constexpr std::int64_t kNanosPerMicro = 1000;
 
-// In this file a channel is an index in kChannels, or kWallClock. kWallClock is the channel of the
-// wall clock of the steps. It is not in kChannels.
+// In this file, `channel` is an index in kChannels, or kWallClock. kWallClock stands for the
+// channel of the wall clock of the steps, which is not in kChannels.
 constexpr std::size_t kWallClock = kNumChannels;
 constexpr std::size_t kNone = kNumChannels + 1;
 
@@ -102,8 +102,9 @@ class Exporter {
     }
   }
 
-  /// Adds the messages of this run that belong to no step, up to, but not including, the first
-  /// event that was logged after `utime`. If `utime` is nullopt, adds all these messages.
+  /// Adds the messages of this run that belong to no step, in the order of the log. Stops before
+  /// the first event that was logged after `utime`. If `utime` is nullopt, adds all remaining
+  /// messages.
   void AddEventsUntil(std::optional<std::int64_t> utime) {
     while (true) {
       if (!event_) event_ = events_.Next();
@@ -134,9 +135,9 @@ class Exporter {
                                    .data = protobuf_});
   }
 
-  /// Sets protobuf_ to a message. Another logger, such as lcm-logger, records signed messages with
-  /// their signatures. So a message that does not decode is tried again without its last bytes,
-  /// which may be a signature.
+  /// Sets protobuf_ to the translated message. Another logger, such as lcm-logger, records signed
+  /// messages with their signatures. So if a message does not decode, this function tries again
+  /// without the last bytes, which may be a signature.
   /// @return false if the message does not decode
   bool Translate(std::size_t channel, runtime::Bytes bytes) {
     const auto translate = [&](runtime::Bytes message) {

@@ -144,8 +144,8 @@ void Writer::PutChunk() {
   entries_.clear();
 }
 
-/// Writes the Message Index records of the chunk. @param offsets is set to the offset of the
-/// Message Index of each channel in the chunk
+/// Writes the Message Index records of the chunk.
+/// @param offsets gets the offset in the file of each channel's Message Index
 /// @return number of bytes of all these records
 std::uint64_t Writer::PutMessageIndexes(std::map<ChannelId, std::uint64_t>& offsets) {
   const std::uint64_t begin = offset_;
@@ -248,7 +248,7 @@ void Writer::PutSummary() {
   }
   const std::uint64_t summary_offset_start = offset_;
   Put(offsets);
-  // summary_crc: of the bytes from summary_start up to, but not including, summary_crc.
+  // summary_crc is the CRC of all bytes from summary_start to the last byte before summary_crc.
   std::string footer;
   PutLittleEndian(summary_start, footer);
   PutLittleEndian(summary_offset_start, footer);

@@ -1,7 +1,7 @@
 // Writes an MCAP file (mcap.dev/spec, version 0): chunks that zstd compresses, an index of the
 // messages of each chunk, and a summary. With the summary, a reader finds the messages of a time
 // without reading the whole file. Attachments and metadata are written immediately. The writer
-// keeps one chunk in memory, and 100 bytes for each chunk that was written.
+// keeps one chunk in memory, and 100 to 300 bytes for each chunk that was written.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class Writer {
  public:
   using Sink = std::function<void(std::string_view)>;
 
-  /// Writes the beginning of the file (magic and Header). @param sink takes the bytes of the file.
-  /// An exception of `sink` reaches the caller.
+  /// Writes the beginning of the file (magic and Header).
+  /// @param sink takes the bytes of the file. An exception of `sink` reaches the caller
   /// @param library the program that writes the file
   Writer(Sink sink, std::string_view library);
   ~Writer();
@@ -49,7 +49,8 @@ class Writer {
   ChannelId AddChannel(SchemaId schema, std::string_view topic, std::string_view encoding,
                        const std::map<std::string, std::string>& metadata);
   /// The messages may come in any order of time. A reader finds the messages of a chunk fastest if
-  /// they came in the order of log_time. @throws std::runtime_error if zstd fails
+  /// they came in the order of log_time.
+  /// @throws std::runtime_error if zstd fails
   void Write(ChannelId channel, const Message& message);
   void AddAttachment(std::string_view name, std::string_view media_type, std::string_view data);
   void AddMetadata(std::string_view name, const std::map<std::string, std::string>& metadata);

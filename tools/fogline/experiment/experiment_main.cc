@@ -1,4 +1,4 @@
-// fogline experiment, a program of its own: trials with people, each with a log of its own.
+// fogline experiment, a separate program: trials with people. Each trial has its own log.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

@@ -139,8 +139,8 @@ const ConditionSection* DrivenCondition(const trials::PlanFile& plan) {
   return nullptr;
 }
 
-/// Checks that the participant can drive if a condition needs this: at a page, with keys or with a
-/// device.
+/// If the participant drives in a condition, checks that the participant has a page, keys or a
+/// device for driving.
 /// @throws InputError if --no-page is given without keys or device; std::runtime_error if this
 ///     build has no page
 void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
@@ -159,8 +159,8 @@ void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan
       Quote(driven->name)));
 }
 
-/// Checks that all trials can be made at the speed of --speed, and with the person of --keys or
-/// --evdev. @throws InputError
+/// Checks that all trials can be made at the speed of the session, also if a person drives with
+/// --keys or --evdev. @throws InputError
 void CheckSpeed(const RunTrialsArguments& arguments, const trials::PlanFile& plan,
                 const trials::SessionOptions& options) {
   for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
@@ -197,8 +197,8 @@ void CheckPorts(const RunTrialsArguments& arguments) {
   }
 }
 
-/// If a trial of the participant needs a run, opens the device and the network of the session once,
-/// before a person waits for the run.
+/// If a trial of the participant needs a run, opens the device and the network of the session once.
+/// So an error is found before a person waits for the run.
 /// @throws InputError; std::runtime_error if the network cannot be reached
 void CheckMeans(const ExperimentPlan& plan, const trials::Results& results,
                 const trials::SessionOptions& options) {

@@ -1,4 +1,5 @@
-"""The bytes of messages, as LCM encodes them: big endian, after the fingerprint of the type.
+"""The bytes of messages, as LCM encodes them: the fingerprint of the type, then the fields, in big
+endian.
 
 The classes of `fogline_lab.messages` use these functions. Only the standard library is needed.
 """

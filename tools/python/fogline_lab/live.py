@@ -106,8 +106,8 @@ class Live:
             except FoglineError as error:  # the messages that came before are yielded first
                 lost = error
                 continue
-            # _wait() has also taken the messages that came while this process got no processor
-            # time.
+            # The given time may have passed while this process got no processor time. _wait() has
+            # then taken the messages that came in this time, and the iteration goes on with them.
             if left is not None and left <= 0 and not self._heard:
                 return
 

@@ -244,7 +244,8 @@ def read_log(path: str | os.PathLike[str], run: int | None = None) -> Log:
 
 
 def _index(data: Any, path: str) -> tuple[dict[str, Events], str]:
-    """The events of each channel, and the fault of the end of the file; "" if there is none."""
+    """The events of each channel, and a text about bytes at the end that are no whole event; "" if
+    there are no such bytes."""
     by_name: dict[bytes, Events] = {}
     at, size, torn = 0, len(data), ""
     unpack, header = _EVENT.unpack_from, _EVENT.size

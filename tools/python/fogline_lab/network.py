@@ -1,4 +1,4 @@
-"""LCM networks: the messages that others send, by UDP multicast (udpm) or from a relay (tcpq).
+"""Receives the messages on LCM networks, by UDP multicast (udpm) or from a relay (tcpq).
 
 Only the standard library is needed. LCM's own library for Python is not used, because Debian does
 not have it. Sources: lcm_udpm.c, lcm_tcpq.c and TCPService.java of LCM 1.3.1.
@@ -17,9 +17,11 @@ DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
 _DEFAULT_GROUP, _DEFAULT_PORT = "239.255.76.67", 7667
 _DEFAULT_RELAY_PORT = 7700
 
-# A datagram: mark, number of the message, channel, 0, payload. A large message comes in fragments:
-# mark, number of the message, its bytes, offset, number of the fragment, number of all fragments;
-# the first one also has the channel and a 0 before its bytes.
+# A datagram has these parts: a mark, the number of the message, the channel, a zero byte, the
+# payload. A large message comes in fragments. A fragment has these parts: a mark, the number of the
+# message, the size of the whole payload, the offset of this part of the payload, the number of the
+# fragment, the number of all fragments, this part of the payload. The first fragment also has the
+# channel and a zero byte before the payload.
 _WHOLE, _FRAGMENT = 0x4C433032, 0x4C433033
 _WHOLE_HEAD, _FRAGMENT_HEAD = struct.Struct(">II"), struct.Struct(">IIIIHH")
 _DATAGRAM_BYTES = 1 << 16
@@ -192,8 +194,8 @@ class Relay:
         self._greeted = False
 
     def read(self, receiver: Receiver) -> int:
-        """As Multicast.read(). Raises FoglineError if the relay has ended, after all messages that
-        came before its end."""
+        """Calls the receiver with each message. @return 0. If the relay has ended, raises
+        FoglineError after all messages that came before its end."""
         end = self._receive()
         while self._take(receiver):
             pass

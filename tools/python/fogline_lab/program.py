@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fogline_lab.log import Log
 
 # How a call shows its progress. True: the program shows its own bar on stderr. False: nothing. A
-# function is called with the numbers done and total. None: a bar if a person sees stderr.
+# function: it is called with two numbers, done and total. None: a bar if a person sees stderr.
 Progress = Union[bool, Callable[[int, int], None], None]
 
 # The program's bar: "[===   ]  40 %  row 40/100  800/s  3 s left". A new bar replaces the old one.
@@ -73,7 +73,8 @@ def _has_reader(stream: Any) -> bool:
 
 
 def _call_with_terminal(command: list[str], progress: Any) -> tuple[str, str, int]:
-    """Gives the program a terminal as stderr, because it shows its progress only there."""
+    """Gives the program a terminal as stderr, because the program shows its progress only on a
+    terminal."""
     ours, its = pty.openpty()
     try:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=its, text=True,

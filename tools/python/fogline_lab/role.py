@@ -59,7 +59,7 @@ class Role:
 
     @classmethod
     def uses_live(cls, scenario: Mapping[str, Any]) -> bool:
-        """Driver in real time: whether it takes the inputs of a person (DRIVER_INPUT)."""
+        """Whether a driver in real time takes the inputs of a person (DRIVER_INPUT)."""
         return False
 
     def live(self, input: driver_input_t | None) -> None:
@@ -86,7 +86,7 @@ def serve(role: type[Role], arguments: Sequence[str] | None = None) -> None:
 
 
 def _runtime() -> Any:
-    """The extension module. It has its own versions of three functions for sockets. LCM's library
+    """The extension module. It has its own versions of two functions for sockets. LCM's library
     uses these versions only if the module is loaded with RTLD_DEEPBIND."""
     flags = sys.getdlopenflags()
     sys.setdlopenflags(flags | os.RTLD_DEEPBIND)

@@ -17,8 +17,8 @@ namespace fogline::replay {
 class LiveRoles {
  public:
   /// @param messages must outlive this object
-  /// @param realtime whether the run is in real time; its threads then run before ordinary threads,
-  ///     like the processes of roles, if the kernel grants it
+  /// @param realtime whether the run is in real time. If so, the threads ask the kernel for the
+  ///     priority that the processes of roles have in real time
   LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic, bool realtime);
   /// Ends the threads.
   ~LiveRoles();

@@ -10,7 +10,7 @@
 namespace fogline::report {
 
 /// Runs gnuplot with `script`, and writes its standard output into `picture`. RunGnuplot() does not
-/// finish `picture`, and uses no shell.
+/// call picture.Finish(), and uses no shell.
 /// @throws std::runtime_error with gnuplot's own message, or when the disk is full; Interrupted
 void RunGnuplot(const std::string& script, AtomicFile& picture);
 
@@ -55,8 +55,8 @@ std::string Margins(const Place& place);
 std::string NameOfX(std::string_view name, double height);
 std::string NameOfY(std::string_view name, double middle);
 
-/// The numbers of the two labels that name the axes. "unset label" needs these numbers. gnuplot
-/// gives lower numbers to other labels.
+/// The numbers of the two labels that name the axes. "unset label" needs these numbers. They are
+/// high, because gnuplot gives lower numbers to other labels.
 inline constexpr int kLabelOfX = 1001;
 inline constexpr int kLabelOfY = 1002;
 

@@ -58,7 +58,8 @@ class Layout {
             top / height_};
   }
 
-  /// Height of the middle of all panels, as a share of the picture's height from below.
+  /// How far the middle of all panels is above the lower edge of the picture, as a share of the
+  /// picture's height.
   double Middle() const { return (1 + (kRoomBelow - above_) / height_) / 2; }
 
   Place PlaceOfKey() const { return {0, 1, 1 - kRoomOfKey / height_, 1}; }

@@ -1,5 +1,5 @@
-// A desk: the interface of a session to participant and experimenter, in a terminal or in pages of
-// a browser.
+// A desk: the interface between a session and its participant and experimenter, in a terminal or in
+// pages of a browser.
 #pragma once
 
 #include <cstdint>
@@ -40,14 +40,16 @@ class Desk {
   /// ready there.
   /// @throws as WaitForBegin()
   virtual void RunOpens(std::int64_t run_id, const std::string& url) = 0;
-  /// Called when the run begins. The speaker accepts markers until RunEnded().
+  /// Called when the run begins. The experimenter's markers can be given to `speaker`
+  /// (Speaker::Mark()) until RunEnded().
   virtual void RunBegins(Speaker& speaker) = 0;
   /// Called repeatedly during the run, from the first step of the log on.
   virtual void RunGoesOn() = 0;
   /// Called when the run has ended, also if it broke off.
   virtual void RunEnded() = 0;
-  /// Asks the questions of a questionnaire. @return the answers to all items, in the order of the
-  /// items @param after the run that the questions are about
+  /// Asks the questions of a questionnaire.
+  /// @param after the run that the questions are about
+  /// @return the answers to all items, in the order of the items
   /// @throws as WaitForBegin()
   virtual std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) = 0;
   /// Called when the participant has made all trials.

@@ -28,7 +28,8 @@
 #include "tools/web/server/server.h"
 
 namespace fogline::web {
-/// The files of both pages; embed.cmake writes this function.
+/// The files of the participant's page and of the experimenter's page. embed.cmake writes this
+/// function.
 std::span<const Asset> TrialAssets();
 }  // namespace fogline::web
 
@@ -126,8 +127,8 @@ RunPageOptions ForRuns(const PageOptions& options) {
 
 }  // namespace
 
-/// The servers of both pages, in a thread of their own. The session's thread waits for the messages
-/// that the servers receive.
+/// The servers of the participant's page and of the experimenter's page, in a thread of their own.
+/// The session's thread waits for the messages that the servers receive.
 class PageDesk::Pages {
  public:
   explicit Pages(const PageOptions& options)
@@ -155,8 +156,8 @@ class PageDesk::Pages {
             experimenter_files_, experimenter_view_)),
         traffic_(options.traffic),
         run_page_(ForRuns(options)) {
-    // fogline-web listens at this place in each run. The place is checked now, so that an error
-    // comes before the participant begins.
+    // In each run, fogline-web listens at this address and port. They are checked now, so that an
+    // error comes before the participant begins.
     const Place seat{{AddressOf(options), options.seat_port}, "--seat-port"};
     runtime::tcpq::RequireFree(seat.endpoint, seat.OptionText());
     Publish();
@@ -164,8 +165,8 @@ class PageDesk::Pages {
   }
 
   ~Pages() {
-    // On a busy machine the thread of the servers may be late. It must send the last state to the
-    // pages before it stops the servers. So this destructor waits for it.
+    // On a busy machine the servers' thread may be late. It must send the last state to the pages
+    // before it stops the servers. So this destructor waits until the servers have stopped.
     std::promise<void> stopped;
     asio::post(context_, [&] {
       participant_->Stop();
@@ -173,14 +174,15 @@ class PageDesk::Pages {
       stopped.set_value();
     });
     stopped.get_future().wait();
-    // The context has no more work when the last connection is closed.
+    // The context stops by itself when the last connection is closed, because it then has no more
+    // work.
     const TimePoint end = Clock::now() + kEndLimit;
     while (!context_.stopped() && Clock::now() < end) std::this_thread::sleep_for(milliseconds(5));
     context_.stop();
     thread_.join();
   }
 
-  /// Changes the state, and shows it in both pages.
+  /// Changes the state, and shows it in the participant's page and in the experimenter's page.
   template <class Change>
   void Set(const Change& change) {
     {
@@ -225,7 +227,8 @@ class PageDesk::Pages {
   std::string participant_address() const { return participant_->access().Url(); }
   std::string experimenter_address() const { return experimenter_->access().Url(); }
 
-  /// Shows the run in both pages. @throws as RunPage::Show()
+  /// Shows the run in the participant's page and in the experimenter's page.
+  /// @throws as RunPage::Show()
   void ShowRun(std::int64_t run_id, const std::string& url, RunPage::Seat seat) {
     run_page_.Show(run_id, url, seat);
     Set([&](PageState& state) {

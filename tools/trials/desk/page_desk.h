@@ -2,12 +2,12 @@
 // addresses. The participant's page shows the title of the run, the questions, and nothing else: no
 // condition, no threshold, no truth. If the participant drives, the page opens the seat of
 // fogline-web for the run. After the run the seat opens the page again. The experimenter's page
-// shows the condition and what has happened, and takes markers. Each address has a token of its
-// own: the participant cannot guess the address of the experimenter, and other users of the machine
-// cannot guess either address.
+// shows the condition and what has happened, and accepts markers. Each address has a token of its
+// own. So the participant cannot guess the address of the experimenter, and other users of the
+// machine cannot guess either address.
 //
 // This process serves both pages itself, and writes the answers itself. So no answer depends on
-// fogline-web, which only shows the run and has the seat.
+// fogline-web, which only shows the run and serves the seat.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 namespace fogline::trials {
 
 struct PageOptions {
-  /// IPv4 address in numbers at which others may open the pages. "": this machine only.
+  /// The numeric IPv4 address at which other machines may open the pages. "": this machine only.
   std::string listen;
   std::uint16_t participant_port = 0;   // 0: any free port
   std::uint16_t experimenter_port = 0;  // 0: any free port

@@ -15,7 +15,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kNoRun = "no run is under way";
 constexpr const char* kNotNow = "the session does not wait for this now";
-// Until the session says that the next run can begin, a page waits at least for this time.
+// The least remaining time of a break that a page gets, s. The session ends the break. Until then
+// the remaining time stays above 0, because at 0 the page lets the participant begin.
 constexpr double kLeastWait_s = 0.1;
 // Largest number of lines on the experimenter's page.
 constexpr std::size_t kMostLines = 200;

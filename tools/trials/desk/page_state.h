@@ -45,8 +45,8 @@ class PageState {
   /// Shows the new addresses of the pages for the run.
   /// @param seat "" if the seat cannot be opened at present
   void MoveRun(std::string view, std::string seat);
-  /// Ends the run, which is over or broke off. Its pages are removed, and markers are refused from
-  /// then on.
+  /// Ends the run, which is complete or broke off. Removes the addresses of its pages. From now on,
+  /// markers are refused.
   void EndRun();
   /// @param after the run that the questions are about
   void Ask(const Next& after, const QuestionnaireSection& questionnaire);
@@ -59,7 +59,7 @@ class PageState {
 
   /// JSON for the page of the participant. It does not contain the condition, the seed, the
   /// threshold or the address of the view.
-  /// @param now the time from which on a page counts a break down
+  /// @param now the time at which a page begins to count a break down
   std::string ForParticipant(TimePoint now = Clock::now()) const;
   /// JSON for the page of the experimenter.
   std::string ForExperimenter(TimePoint now = Clock::now()) const;
@@ -80,13 +80,14 @@ class PageState {
   };
 
   void Enter(Stage stage);
-  /// Remaining time of the break, s; 0 only if the next run can begin.
+  /// In kWaiting: the remaining time of the break, s; 0 only if the next run can begin. In
+  /// the other stages: 0.
   double Wait_s(TimePoint now) const;
 
   Stage stage_ = Stage::kStarting;
   std::int64_t number_;
   Next next_;
-  bool breaks_ = false;  // whether the next run cannot begin yet
+  bool breaks_ = false;  // whether a break delays the next run
   TimePoint break_end_;
   QuestionnaireSection questionnaire_;
   std::string view_;

@@ -13,7 +13,7 @@
 namespace fogline::trials {
 namespace {
 
-// Time limit for fogline-web to begin to listen. It is long enough for a busy machine.
+// The time within which fogline-web must begin to listen. It is long enough for a busy machine.
 constexpr Duration kPageLimit = milliseconds(10'000);
 // The pause before fogline-web is started again. It doubles with each failed start.
 constexpr Duration kFirstPause = milliseconds(500);

@@ -1,8 +1,8 @@
 // The pages of fogline-web for a run: the view for the experimenter and, if the participant drives,
-// the seat. fogline-web is a child process. It has the same addresses in all runs of a session.
-// Only a port that the system chose can change, if another program has taken it. If fogline-web
-// ends too early, it is started again after a pause, which grows with each failure. Meanwhile the
-// run and the session continue.
+// the seat. fogline-web is a child process. It has the same addresses in all runs of a session. The
+// exception is a port that the system chose: if another program has taken this port, the system
+// chooses another one. If fogline-web ends too early, it is started again after a pause, which
+// grows with each failure. Meanwhile the run and the session continue.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace fogline::trials {
 
 struct RunPageOptions {
-  std::string address = "127.0.0.1";  // IPv4 in numbers, at which fogline-web listens
+  std::string address = "127.0.0.1";  // numeric IPv4 address on which fogline-web listens
   std::uint16_t port = 0;             // 0: any free port; the same port for all runs, if possible
   std::vector<std::string> traffic;   // the option --key for fogline-web, if there is a key
 };
@@ -33,7 +33,7 @@ class RunPage {
   void Show(std::int64_t run_id, const std::string& url, Seat seat);
   /// Starts fogline-web again if it has ended. Call this function regularly during the run.
   Change Look();
-  /// Reason why no further start of fogline-web can be expected to succeed; "" if fogline-web runs,
+  /// The reason why further starts of fogline-web would probably fail, too; "" if fogline-web runs,
   /// or if the next start may succeed.
   std::string WhyHopeless() const;
   void End();

@@ -1,4 +1,4 @@
-// A session in the terminal: prompts on stdout, answers from stdin, one in a line.
+// A session in the terminal: prompts on stdout, one answer per line from stdin.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class TerminalDesk final : public Desk {
 
  private:
   /// Reads the next line of stdin, and returns it without its line feed. The caller has printed a
-  /// prompt before. If no line comes, the function ends the line of the prompt on stdout.
+  /// prompt before. If no line comes, the function prints a line feed after the prompt.
   /// @throws Interrupted; std::runtime_error at the end of stdin
   std::string ReadLine();
   std::string WaitForLine();

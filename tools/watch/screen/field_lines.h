@@ -11,8 +11,8 @@
 namespace fogline::watch {
 
 /// Lines "name   value", one for each field of a message and for each element of an array. For an
-/// unknown channel, or for a message that cannot be decoded, the first bytes in hexadecimal. Text
-/// from the network is made safe to print.
+/// unknown channel, or for a message that cannot be decoded, the lines show the first bytes in
+/// hexadecimal. Text from the network is made safe to print.
 std::vector<std::string> FieldLines(std::string_view channel, runtime::Bytes message);
 
 std::vector<std::string> FieldLines(const status_t& status);

@@ -28,8 +28,8 @@ std::string KeyOf(const RunView& run, const ChannelView& channel) {
   return fmt::format("channel {} {}", run.run_id, channel.channel);
 }
 
-/// Pointers to the elements, in this order. Column 0 is the natural order, which is the order of
-/// `all`. For another column, the element with the largest `number` comes first. With
+/// Pointers to the elements, in the order `order`. Column 0 is the natural order, which is the
+/// order of `all`. For another column, the element with the largest `number` comes first. With
 /// `order.reversed`, the order is the opposite one.
 template <class T>
 std::vector<const T*> Sorted(const std::vector<T>& all, const TableOrder& order,

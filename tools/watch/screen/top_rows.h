@@ -38,7 +38,7 @@ using TableOrders = std::array<TableOrder, kTables>;
 /// The columns by which a table can be sorted. The first one stands for the natural order.
 std::vector<std::string_view> SortColumns(Table table);
 
-/// A row of a table. Rows with a key can be opened.
+/// A row of a table. If `key` is not empty, the user can open the row to see its details.
 struct TopRow {
   Line line;
   Table table = Table::kNone;

@@ -55,7 +55,7 @@ struct PacketSocket::Batch {
     }
   }
   /// Prepares the message headers for a call of recvmmsg(). Each call overwrites the lengths in
-  /// them.
+  /// these headers.
   mmsghdr* Ready() {
     for (std::size_t i = 0; i < kBatch; ++i) {
       msghdr& header = messages[i].msg_hdr;

@@ -21,8 +21,8 @@ namespace fogline::watch {
 struct Packet {
   SenderAddress from;
   runtime::Bytes bytes;  // valid during the call
-  // Packets that the kernel dropped before this one, because they found no room in the socket's
-  // buffer (SO_RXQ_OVFL).
+  // Number of packets that the kernel dropped between the previous packet and this packet, because
+  // the socket's buffer was full (SO_RXQ_OVFL).
   std::uint32_t dropped = 0;
   std::int64_t unix_us = 0;  // time of arrival, in us since 1970
 };
@@ -62,7 +62,7 @@ class PacketSocket {
   std::unique_ptr<runtime::GroupSocket> socket_;
   std::unique_ptr<Batch> batch_;  // buffers for one system call
   std::uint32_t dropped_ = 0;  // the kernel's count of packets that found no room; it wraps around
-  // Set if the packets come over a route of this machine, which may change.
+  // Set if the packets come over a route of this machine. Such a route may change.
   std::optional<runtime::GroupMembership> membership_;
   TimePoint heard_{};  // time of the last packet, or of the last renewal
 };

@@ -67,9 +67,10 @@ void SenderSequence::Advance(const runtime::LcmPacket& packet, std::int64_t ahea
   progressed_ = now;
   Miss(incomplete ? ahead : ahead - 1);
   std::erase_if(partial_, [this](const Partial& p) { return AgeOf(p.number) >= kWindow; });
-  // If the packet is a first fragment, the packets that this process dropped before it cannot
-  // explain a later gap. If the first fragment is missing, this process may have dropped it, so the
-  // dropped packets still count.
+  // unexplained_ counts packets that this process dropped before this packet. If this packet is the
+  // first fragment of its message, the dropped packets belong to earlier messages. So they cannot
+  // explain why a later message is missing. Otherwise one of them may be the first fragment of this
+  // message, so they still count.
   if (packet.First()) unexplained_ = 0;
   if (!Completes(packet)) return;
   whole_[0] = true;

@@ -1,6 +1,6 @@
 // Counts the messages of a sender that arrived, and those that were lost, by LCM's own numbers.
-// This works for any LCM program, because each LCM instance numbers its messages. The caller passes
-// packets and times as arguments.
+// This works for any LCM program, because each LCM instance numbers its messages. The class has no
+// socket and no clock: the caller passes packets and times as arguments.
 #pragma once
 
 #include <bitset>
@@ -30,8 +30,7 @@ class SenderSequence {
     bool operator==(const Counts&) const = default;
   };
 
-  /// @param dropped number of packets that this process had dropped, for lack of room, when this
-  ///     packet came
+  /// @param dropped number of all packets that this process has dropped so far, for lack of room
   void Add(const runtime::LcmPacket& packet, std::int64_t dropped, TimePoint now);
 
   const Counts& counts() const { return counts_; }
@@ -41,18 +40,18 @@ class SenderSequence {
   /// Largest distance of a plausible number from the newest one. A number that is further ahead, or
   /// older than the window, counts only when its successor follows. The rule and the number
   /// (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC 3550, appendix A.1). If
-  /// the numbers went ahead, the numbers between count as lost. If they went back, the sender has
-  /// begun its numbers again, and no message counts as lost.
+  /// such a number is ahead of the newest number, the messages with the numbers between these two
+  /// count as lost. If it is older, the sender has begun its numbers again, and no message counts
+  /// as lost.
   static constexpr std::int64_t kMaxJump = 3000;
   /// Largest number of successive messages that can be lost. If the numbers go ahead by more, the
   /// sender has begun again, because no sender sends so many messages of which none arrives.
   static constexpr std::int64_t kMaxLost = 1'000'000;
-  /// If a known number comes, and no newer message has come for this time, the sender may have
-  /// begun its numbers again. The successor of this number confirms it.
+  /// If a message has a number that has come before, and no newer message has come for this time,
+  /// the sender may have begun its numbers again. A message with the next number confirms this.
   static constexpr Duration kBeginsAgain = milliseconds(1000);
-  /// At most this many messages are remembered of which some fragments are missing. A sender
-  /// finishes each message before the next one, so more messages are incomplete only if packets
-  /// were lost.
+  /// Limit for the number of incomplete messages that are remembered. A sender finishes each
+  /// message before the next one, so more messages are incomplete only if packets were lost.
   static constexpr std::size_t kMaxPartial = 4;
 
  private:
@@ -84,7 +83,7 @@ class SenderSequence {
   std::optional<runtime::LcmPacket> doubtful_;  // waits for its successor; kept without its channel
   TimePoint progressed_{};                      // when newest_ grew last
   std::int64_t dropped_ = 0;                    // value of `dropped` at the last packet
-  std::int64_t unexplained_ = 0;  // packets dropped here since the last gap (may explain the next)
+  std::int64_t unexplained_ = 0;  // packets dropped since the last gap; may explain the next gap
 };
 
 }  // namespace fogline::watch

@@ -1,5 +1,5 @@
-// All senders on an LCM network, and how many of their messages were lost. The caller passes
-// packets and times as arguments.
+// All senders on an LCM network, and how many of their messages were lost. The classes have no
+// socket and no clock: the caller passes packets and times as arguments.
 #pragma once
 
 #include <compare>
@@ -26,7 +26,7 @@ struct SenderAddress {
 struct SenderView {
   std::string address;  // such as "127.0.0.1:41234"
   SenderSequence::Counts counts;
-  std::vector<std::string> channels;  // first channels on which it sent, which identify the program
+  std::vector<std::string> channels;  // first channels on which it sent; they identify the program
   bool more_channels = false;         // whether it has sent on further channels
   double age_s = 0;                   // time since its last packet
 };

@@ -17,7 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The first byte of a binary frame. The numbers of the server and of the client are independent.
+// The first byte of a binary frame. A value has different meanings in frames of the server and in
+// frames of the client.
 constexpr char kMessageData = 1;
 constexpr unsigned char kClientMessageData = 1;
 constexpr unsigned char kClientServiceCall = 2;

@@ -41,7 +41,7 @@ class Session {
     std::vector<Frame> frames;
     std::string error;  // why the frame is refused; "" if it is not
   };
-  /// Takes a frame of the client. A frame that is refused is answered by a status of level error.
+  /// Handles a frame of the client. If the frame is refused, the answer is a status of level error.
   Answer Received(std::string_view bytes, bool binary);
 
   /// The frame with a message for the client; nullopt if the client has not subscribed to the

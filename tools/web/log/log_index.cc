@@ -8,9 +8,9 @@
 namespace fogline::web {
 namespace {
 
-/// kChannelOfRow converts an index in kStepNames into the index in kChannels. kRowOfChannel
-/// converts in the other direction; for a channel without a message in each step, it has
-/// kStepChannels.
+/// kChannelOfRow converts an index in log::kStepNames (the channels with a message in each step)
+/// into the index in kChannels. kRowOfChannel converts in the other direction. For a channel that
+/// is not in kStepNames, its value is kStepChannels.
 constexpr std::array<std::size_t, log::kStepChannels> kChannelOfRow = [] {
   std::array<std::size_t, log::kStepChannels> channels{};
   std::size_t row = 0;
@@ -26,9 +26,9 @@ constexpr std::array<std::size_t, kNumChannels> kRowOfChannel = [] {
   return rows;
 }();
 
-// The step of a message must not exceed the number of events before this message by more than this
-// limit. Without the limit, one forged message with a late step would need the memory for all steps
-// before it.
+// Limit for the number of a step: the number of events up to its message, plus this value. Without
+// the limit, one forged message with a very late step would make the index allocate memory for all
+// steps before this step.
 constexpr std::int64_t kLargestGap = 100'000;
 
 constexpr std::uint64_t kMostOffset = (1ULL << 44) - 1;
@@ -72,9 +72,8 @@ void LogIndex::Take(const log::Event& event) {
     is_signed_ = runtime::LooksSigned(event.data) &&
                  runtime::Decode(runtime::WithoutSignature(event.data), ignored);
   }
-  // The recorder writes the channels of a step in the order of the table. So this message is
-  // probably of the channel that follows the channel of the message before. The search begins at
-  // this probable channel.
+  // The recorder writes the channels of a step in the order of kChannels. So the search begins at
+  // the channel after the channel of the previous message, because a match there is most probable.
   for (std::size_t i = 0; i < log::kStepChannels; ++i) {
     const std::size_t row = (guess_ + i) % log::kStepChannels;
     if (log::kStepNames[row] != event.channel) continue;

@@ -19,9 +19,9 @@
 namespace fogline::web {
 
 /// Reads a log once, and keeps the file mapped. The index needs eight bytes of memory for each
-/// message. The system may also keep the last read pages of the file in memory.
+/// message. The system may also keep recently read pages of the file in memory.
 ///
-/// The index also has the messages of incomplete steps, and the messages behind a missing step. So
+/// The index also has the messages of incomplete steps, and the messages after a missing step. So
 /// it may have more steps than RunLogReader, which stops at an incomplete step.
 class LogIndex {
  public:
@@ -35,7 +35,7 @@ class LogIndex {
   /// The first and the last step that have a message; 0 and -1 if no step has a message.
   std::int64_t first_step() const { return first_; }
   std::int64_t last_step() const { return static_cast<std::int64_t>(rows_.size()) - 1; }
-  /// Number of messages of steps in the index.
+  /// Number of messages in the index that belong to a step.
   std::int64_t messages() const { return messages_; }
 
   /// The message of a step, without its signature; empty if the log lacks the message. The bytes
@@ -43,15 +43,16 @@ class LogIndex {
   /// @param channel index of the channel in kChannels
   runtime::Bytes Message(std::int64_t step, std::size_t channel) const;
 
-  /// Number of messages on a channel without a message in each step (Pace::kControl).
+  /// Number of messages on a channel with Pace::kControl: its messages do not belong to steps.
   std::int64_t control_messages(std::size_t channel) const { return std::ssize(control_[channel]); }
-  /// The i-th of these messages, in the order of the log; otherwise like Message().
+  /// The i-th message on a channel with Pace::kControl, in the order of the log and without its
+  /// signature. The bytes are valid as long as the index exists.
   runtime::Bytes ControlMessage(std::size_t channel, std::int64_t i) const {
     return At(control_[channel][static_cast<std::size_t>(i)]);
   }
 
   const std::vector<RunEvent>& events() const { return events_.events(); }
-  /// Number of later events, which events() does not have (RunEvents::kMost).
+  /// Number of later events that events() lacks, because it has at most RunEvents::kMost events.
   std::size_t events_left_out() const { return events_.left_out(); }
 
  private:

@@ -23,7 +23,7 @@ namespace {
 // 8 bytes each.
 constexpr std::size_t kUtimeOffset = 24;
 
-/// Names the messages of a series: their channel and, for STATUS, the role that has sent them.
+/// Identifies the messages of a series: their channel and, for STATUS, the role that has sent them.
 struct Source {
   std::size_t channel = 0;
   std::string role;  // "": any
@@ -73,7 +73,7 @@ class LoggedField {
     return Decimate(from, to, request_.points, at);
   }
 
-  /// The points of a channel that has no message in each step.
+  /// The points of a channel with Pace::kControl.
   std::vector<SeriesPoint> OfControl() const {
     std::vector<SeriesPoint> points;
     status_t status;
@@ -86,8 +86,8 @@ class LoggedField {
         continue;
       }
       auto point = Of(message);
-      // If a role is started again, its time goes back. The times of a series must not go back, so
-      // the time of the point before is used.
+      // If a role is started again, the time in its messages goes back. The times of a series must
+      // not go back, so this point then gets the time of the point before.
       if (!points.empty()) point->time_s = std::max(point->time_s, points.back().time_s);
       points.push_back(*point);
     }

@@ -29,7 +29,7 @@ Series Decimate(std::int64_t from, std::int64_t to, std::int64_t points,
                 const std::function<std::optional<SeriesPoint>(std::int64_t step)>& at);
 
 /// The first point of the steps from `from` to `to`, and each point whose value differs from the
-/// one before it.
+/// value of the point before.
 /// @param most limit for the number of points
 /// @return nullopt if there are more than `most` points
 std::optional<Series> Changes(std::int64_t from, std::int64_t to, std::int64_t most,

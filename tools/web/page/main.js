@@ -95,8 +95,8 @@ class Page {
   }
 
   /**
-   * Connects with a new token. The reader has pasted the address of a server that was started
-   * again.
+   * Connects with a new token. Called when the reader pastes the address of a server that was
+   * started again.
    */
   takeNewToken(hash) {
     this.link = readFragment(hash);
@@ -211,7 +211,8 @@ class Page {
     setAttribute(byId("title"), "title", run.title);
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
-    // The server sends all events again, with the texts for this scenario.
+    // The server sends all events again, with the texts for this scenario. So the page drops the
+    // events that it has.
     if (this.isLive) this.events = [];
     if (!isNew) return;
     this.isOver = false;
@@ -230,7 +231,7 @@ class Page {
     const {step} = readFragment(location.hash);
     this.clock.pause();
     this.clock.time = this.store.timeOf(step ?? log.first_step);
-    this.store.frame(this.step);  // requests its messages before the values of the curves
+    this.store.frame(this.step);  // requests the step's messages before the values of the curves
     this.build();
     this.showConnection("open");
   }
@@ -317,7 +318,7 @@ class Page {
     if (this.store.generation !== this.generation) this.build();
     const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
-    // If the reader's time has reached the end of the live run so far, it follows the run again.
+    // If the clock has played up to the newest step of a live run, it follows the run again.
     if (this.isLive && played && this.clock.state === "paused") this.clock.follow();
     if (!this.isLive && this.waitsForFirst(now)) return;
     this.draw();

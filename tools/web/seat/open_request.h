@@ -42,9 +42,9 @@ class OpenRequest {
   const std::optional<Request>& request() const { return request_; }
 
  private:
-  /// The beginning of a request also counts as known if the command before the request is missing,
-  /// and the last known command is at most this much older. Our choice: a fifth of a second,
-  /// because the countdown shows whole seconds.
+  /// If the command before a request is missing, the request may have begun earlier. But if the
+  /// last known command is older than the request by at most this time, the beginning counts as
+  /// known. Our choice: a fifth of a second, because the countdown shows whole seconds.
   static constexpr std::int64_t kMostGap_us = 200'000;
 
   static bool Asks(std::int8_t mode) {

@@ -5,8 +5,8 @@
 // seat, or the client with the seat is silent, a DRIVER_INPUT every kInputEvery says that no person
 // drives. So a run that gets no DRIVER_INPUT knows that there is a fault.
 //
-// A page that is only open does not keep the seat. If no person is present at the client with the
-// seat, the first other client with a person gets the seat.
+// An open page without a person does not keep the seat from others. If no person is present at the
+// client with the seat, the first other client with a person gets the seat.
 #pragma once
 
 #include <cstdint>

@@ -105,7 +105,7 @@ void ReadDevice(const json& frame, SeatInput& input) {
   input.device = name.get<std::string>();
 }
 
-/// @throws InputError with the error in the text
+/// @throws InputError that says what is wrong in the text
 SeatInput ParseInput(std::string_view text) {
   const json frame = json::parse(text, nullptr, false);
   if (frame.is_discarded()) throw InputError("this frame is no JSON");

@@ -21,7 +21,7 @@ struct SeatInput {
   std::int32_t buttons = 0;   // bits of driver_input_t
   std::int8_t device_kind = 0;
   std::string device;
-  std::optional<double> latency_ms;  // a measured latency that no earlier input has
+  std::optional<double> latency_ms;  // a measured latency that no earlier input has reported
 };
 
 /// A frame that is refused, with the reason for its sender and for stderr.

@@ -27,10 +27,10 @@ std::string SeatRunText(const RunFacts& run);
 /// The beginning of a request to take over, from which the page counts down.
 std::string SeatRequestText(const OpenRequest::Request& request);
 
-/// The message in the form that the seat gets: the header and the fields that the page shows; all
+/// The message in the form that the page gets: the header and the fields that the page shows; all
 /// other fields are 0.
 /// @param channel index of the channel in kChannels
-/// @return nullopt if the seat does not get the message, or the message cannot be decoded
+/// @return nullopt if the page does not get the message, or the message cannot be decoded
 std::optional<std::vector<std::uint8_t>> ForSeat(std::size_t channel, runtime::Bytes bytes);
 
 }  // namespace fogline::web

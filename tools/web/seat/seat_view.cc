@@ -116,7 +116,8 @@ void SeatView::TellRun() {
   for (const auto& [id, driver] : drivers_) driver.client->Send(frame);
 }
 
-// The page gets the beginning of a request before it gets the HOST_COMMAND that asks.
+// Tells each page /drive that a request to take over begins. A page gets this text before it gets
+// the HOST_COMMAND with the request.
 void SeatView::TellRequest(const RingMessage& message) {
   if (message.channel != IndexOf<arbitration_t>()) return;
   arbitration_t command;

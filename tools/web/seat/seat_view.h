@@ -1,6 +1,7 @@
 // A live view with a seat for one client that drives. It publishes the inputs of this client as
-// DRIVER_INPUT on the network of the run, and nothing else. The other clients are viewers of the
-// live view. The clients of the seat get only the data of the page /drive (seat_told.h).
+// DRIVER_INPUT on the network of the run, and nothing else. Clients with the page /drive get only
+// the data of this page (seat_told.h), and at most one of them has the seat. All other clients are
+// viewers of the live view.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +34,7 @@ class SeatView final : public View {
   SeatView(boost::asio::io_context& context, LiveView& live,
            std::optional<runtime::SigningKey> key);
 
-  /// Ends the work of this view in the context. Tells the run that no person drives.
+  /// Ends the tasks of this view in the io_context. Tells the run that no person drives.
   void Stop();
 
   void Opened(Client& client) override;

@@ -25,7 +25,7 @@ enum class Verdict { kAllowed, kWrongHost, kForeignOrigin, kWrongToken };
 /// The reason why a request is refused, as a part of a sentence. @pre the verdict is not kAllowed
 std::string_view WhyRefused(Verdict verdict);
 
-/// The headers of a request that Access judges. A missing header is empty.
+/// The parts of a request by which Access decides. A missing header is empty.
 struct RequestOrigin {
   std::string_view host;
   std::string_view origin;
@@ -36,7 +36,7 @@ struct RequestOrigin {
 class Access {
  public:
   struct Rules {
-    std::string address;               // IPv4 in numbers, on which the server listens
+    std::string address;               // numeric IPv4 address on which the server listens
     std::uint16_t port = 0;            // the port on which it listens
     std::string token;                 // "": no token is needed
     std::vector<std::string> origins;  // further origins that may open a WebSocket
@@ -50,9 +50,9 @@ class Access {
   /// Whether a WebSocket may be opened.
   Verdict OfWebSocket(const RequestOrigin& request) const;
 
-  /// The address for a browser, such as "http://127.0.0.1:7680/". The token is behind '#', because
-  /// a browser sends this part to no server.
-  /// @param more further parts behind '#', such as "step=190"; "" for none
+  /// The address for a browser, such as "http://127.0.0.1:7680/". The token comes after '#',
+  /// because a browser sends this part to no server.
+  /// @param more further parts after '#', such as "step=190"; "" for none
   std::string Url(std::string_view more = "") const;
   /// The address of the participant's page, with the driver's token.
   std::string DriveUrl() const;

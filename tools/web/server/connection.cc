@@ -114,7 +114,7 @@ class BeastConnection final : public Connection,
   beast::tcp_stream stream_;  // until the WebSocket is opened
   beast::flat_buffer buffer_{Server::kMostFrameBytes + Server::kMostHeaderBytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  HttpAnswer answer_;  // its text must exist until it has been sent
+  HttpAnswer answer_;  // `text` must exist until the answer has been sent
   std::optional<Response> response_;
 
   std::optional<Socket> socket_;
@@ -206,8 +206,8 @@ void BeastConnection::Write(HttpAnswer answer) {
   for (const auto& [name, value] : answer_.headers) {
     response_->set(beast::string_view(name.data(), name.size()), value);
   }
-  // A connection handles one request. Otherwise the idle connections of browsers would take the
-  // places of viewers.
+  // A connection handles one request. Otherwise the idle connections of browsers would use up the
+  // limits for callers (server.h).
   response_->keep_alive(false);
   constexpr unsigned kNotModified = 304;  // this answer says nothing about the size of the file
   if (answer_.status != kNotModified) response_->content_length(body.size());
@@ -369,7 +369,8 @@ void BeastConnection::Close(CloseCode code, const std::string& why,
                             std::chrono::milliseconds limit) {
   reason_.emplace(static_cast<websocket::close_code>(code), why.substr(0, 120));
   // A client that is cut off gets only the reason. When the program ends, a client also gets the
-  // frames that wait for it, unless it is slow: then the reason would come too late.
+  // frames that wait for it. A slow client does not get these frames, because otherwise the reason
+  // would come too late.
   if (code != CloseCode::kGoingAway || queue_.bytes() > kPauseBytes) queue_.Clear(writing_);
   farewell_.expires_after(limit);
   farewell_.async_wait([self = shared_from_this()](error_code stopped) {

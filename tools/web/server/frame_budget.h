@@ -13,7 +13,8 @@ class FrameBudget {
  public:
   static constexpr double kFrames = 200;
   /// Limit for a client that drives. The seat itself refuses more than 250 inputs a second, and
-  /// answers each refused input. So a client that sends twice as many ignores the answers.
+  /// answers each refused input. A client that sends twice as many inputs ignores these answers,
+  /// and is cut off.
   static constexpr double kSeatFrames = 500;
 
   explicit FrameBudget(TimePoint now, double frames = kFrames)

@@ -25,7 +25,7 @@ struct HttpAnswer {
   unsigned status = 200;
   /// The headers that depend on the request, except Date, Server and Content-Length.
   std::vector<std::pair<std::string_view, std::string>> headers;
-  std::string_view body;  // a file of a page, or `text`
+  std::string_view body;  // a file of a page; "" if `text` is the answer
   std::string text;       // one line for a person
   Verdict verdict = Verdict::kAllowed;
 };
@@ -35,7 +35,7 @@ struct HttpAnswer {
 std::vector<std::pair<std::string_view, std::string_view>> SafetyHeaders();
 
 /// The answer to a request that does not open a WebSocket, or that may not open one. Only GET is
-/// allowed. "/" means "/index.html", "/drive" means "/drive.html". A query behind a path is
+/// allowed. "/" means "/index.html", "/drive" means "/drive.html". The query after a path is
 /// ignored.
 HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<const Asset> assets);
 

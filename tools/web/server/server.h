@@ -2,7 +2,7 @@
 // nothing blocks it. The server does not use runs or logs: a View does.
 //
 // Every limit protects the other clients and the memory of this process. A client that exceeds a
-// limit is closed, counted, and named on stderr. A client that has not opened a WebSocket is a
+// limit is closed, counted, and reported on stderr. A client that has not opened a WebSocket is a
 // caller. Callers have their own limits, so a caller that is refused cannot take the place of a
 // viewer.
 #pragma once
@@ -37,7 +37,7 @@ enum class CloseCode : std::uint16_t {
   kTryAgainLater = 1013,    // the client does not read its bytes
 };
 
-/// An open WebSocket, in the form that a view uses.
+/// An open WebSocket. A View uses it through this interface.
 class Client {
  public:
   virtual ~Client() = default;
@@ -52,10 +52,11 @@ class Client {
   virtual void Send(OutgoingFrame frame) = 0;
   /// The number of bytes in the queue.
   virtual std::size_t waiting() const = 0;
-  /// Closes the client because it exceeds a limit. The client is counted, and named on stderr.
+  /// Closes the client because it exceeds a limit. The client is counted, and reported on stderr.
   /// View::Closed() is called later, not during this call.
   virtual void CutOff(CloseCode code, const std::string& why) = 0;
-  /// Counts a frame of the client that cannot be used, and names it on stderr. The client stays.
+  /// Counts a frame of the client that cannot be used, and prints the reason on stderr. The client
+  /// stays connected.
   virtual void CountWrongFrame(std::string_view why) const = 0;
 };
 
@@ -75,8 +76,9 @@ class View {
 
 /// Limits of a server. Tests make them smaller.
 struct ServerLimits {
-  std::size_t viewers = 64;  // WebSockets, without the place that is kept for a client that drives
-  // Limit for the number of callers. A browser opens at most 6 connections for a page at a time.
+  std::size_t viewers = 64;  // WebSockets; one more is allowed for a client that drives
+  // Limit for the number of callers (clients that have not opened a WebSocket). A browser opens at
+  // most 6 connections for a page at a time.
   std::size_t callers = 64;
   std::size_t callers_of_one = 32;  // from one address
   // Time in which a request must come, and in which its answer must be read.
@@ -87,7 +89,7 @@ struct ServerLimits {
 };
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  // IPv4 in numbers
+  std::string address = "127.0.0.1";  // a numeric IPv4 address
   std::uint16_t port = 0;             // 0: the system chooses a port
   std::string token;                  // see Access::Rules
   std::vector<std::string> origins;   // see Access::Rules
@@ -102,7 +104,8 @@ struct ServerCounts {
   std::int64_t viewers = 0;  // WebSockets that are open, including those that drive
   std::int64_t drivers = 0;  // WebSockets that drive, or ask for the seat
   std::int64_t cut_off = 0;  // clients that exceeded a limit, or broke RFC 6455
-  // Number of callers that exceeded a limit, or had a wrong Host, Origin or token.
+  // Number of callers that exceeded a limit, or whose request was refused, such as for a wrong
+  // Host, Origin or token.
   std::int64_t refused = 0;
   std::int64_t wrong_frames = 0;  // frames of open WebSockets that could not be used
 };
@@ -150,7 +153,7 @@ class Server {
   /// that viewers cannot keep a person from driving.
   bool IsFull() const;
   void Leave(std::uint64_t id);
-  /// Counts a viewer that exceeds a limit, and names it on stderr.
+  /// Counts a viewer that exceeds a limit, and prints its address and the reason on stderr.
   void CountCutOff(const std::string& address, const std::string& why);
   void CountRefused(const std::string& address, std::string_view why);
   void CountWrongFrame(const std::string& address, std::string_view why);

@@ -17,10 +17,10 @@ constexpr bool IsFoxglove(std::string_view protocol) {
   return protocol == kFoxgloveProtocol || protocol == kFoxgloveSdkProtocol;
 }
 
-/// The first subprotocol of the header Sec-WebSocket-Protocol that the server knows. The header may
-/// name several.
-/// @return kViewProtocol if the header is empty; "" if the server knows none of them
+/// The first subprotocol in the header Sec-WebSocket-Protocol that the server knows. The header may
+/// name several subprotocols.
 /// @param seat whether a person may drive
+/// @return kViewProtocol if the header is empty; "" if the server knows none of them
 std::string_view ChooseProtocol(std::string_view header, bool seat);
 
 /// A line for clients that names the subprotocols of the server.

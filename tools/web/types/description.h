@@ -16,7 +16,7 @@ nlohmann::ordered_json TypesJson(const LcmTypes& types);
 /// The fingerprint of each type, by its name, as "0x" and 16 digits.
 nlohmann::ordered_json FingerprintsJson(const LcmTypes& types);
 
-/// The channels of services/graph.h in their order: `id` (the place in kChannels), `name`, `type`,
+/// The channels of services/graph.h in their order: `id` (the index in kChannels), `name`, `type`,
 /// `from`, `what`. For STATUS and RESEND, which several roles send, `from` is "everyone".
 nlohmann::ordered_json ChannelsJson();
 

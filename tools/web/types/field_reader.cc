@@ -37,7 +37,7 @@ void CheckIndices(const LcmMember& member, const PathPart& part) {
   }
 }
 
-/// The place of an element among all elements of a member; nullopt if there is no such element.
+/// The index of an element among all elements of a member; nullopt if there is no such element.
 std::optional<std::size_t> PlaceOf(const std::vector<std::size_t>& indices, const Extent& extent) {
   std::size_t place = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {

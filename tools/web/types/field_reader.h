@@ -20,8 +20,9 @@ class FieldReader {
   ///     proposes the nearest name. Any index is accepted for an array whose length varies.
   FieldReader(const LcmTypes& types, const LcmStruct& type, std::string_view path);
 
-  /// Returns the value. A boolean is 0 or another number. An integer beyond 2^53 is rounded.
-  /// @param message with its fingerprint; bytes behind the field, such as a signature, are ignored
+  /// Returns the value. A boolean is 0 (false) or another number (true). An integer beyond 2^53 is
+  /// rounded.
+  /// @param message with its fingerprint; bytes after the field, such as a signature, are ignored
   /// @return nullopt if the message is of another type, ends before the field, has fewer elements,
   ///     or the value is infinite or NaN
   std::optional<double> operator()(Bytes message) const;

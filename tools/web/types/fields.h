@@ -8,7 +8,7 @@
 
 namespace fogline::web {
 
-/// One name of a path, and the indices behind it.
+/// One name of a path, and the indices after it.
 struct PathPart {
   std::string name;
   std::vector<std::size_t> indices;

@@ -57,11 +57,11 @@ struct LcmMember {
   std::string name;
   std::string type;                       // as written: a primitive type or a struct
   std::optional<LcmPrimitive> primitive;  // nullopt: a struct
-  std::size_t nested = 0;                 // place of a struct in LcmTypes::structs()
+  std::size_t nested = 0;                 // index of a struct in LcmTypes::structs()
   std::vector<LcmDimension> dimensions;   // empty: a single value
-  std::string comment;                    // comments before the member, and behind it
-  /// The number of this member among the members of the struct that are lengths, from 0 on; nullopt
-  /// if the member is not the length of an array.
+  std::string comment;                    // comments before and after the member
+  /// The members of a struct that are lengths of arrays have the numbers 0, 1, 2 ... This is the
+  /// number of this member; nullopt if the member is not the length of an array.
   std::optional<std::size_t> length_slot;
 };
 
@@ -73,8 +73,8 @@ struct LcmStruct {
   std::vector<LcmMember> members;
   /// The first 8 bytes of each message of this type. LcmTypes computes it.
   std::int64_t fingerprint = 0;
-  /// Size on the wire without the fingerprint, in bytes; nullopt if it varies. LcmTypes computes
-  /// it.
+  /// Size on the wire without the fingerprint, in bytes; nullopt if the size varies. LcmTypes
+  /// computes it.
   std::optional<std::size_t> fixed_size;
 
   std::string FullName() const { return package.empty() ? name : package + "." + name; }
@@ -89,7 +89,8 @@ inline constexpr std::size_t kMaxDimensions = 4;
 /// lcm-gen computes it in the same way (lcmgen.c, lcm_struct_hash).
 std::int64_t OwnHash(const LcmStruct& type);
 
-/// The unit that ends a field's name, such as "m/s" for "host_speed_mps"; "" if the name has none.
+/// The unit at the end of a field's name, such as "m/s" for "host_speed_mps"; "" if the name has
+/// none.
 std::string_view UnitOf(std::string_view field);
 
 }  // namespace fogline::web

@@ -18,7 +18,7 @@ bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') 
 // Whether a character belongs to a word. A word may have dots: the name of a struct with its
 // package.
 bool IsInWord(char c) { return IsLetter(c) || IsDigit(c) || c == '.'; }
-// Whether a character belongs to a number. A number may have a sign behind its exponent, and the
+// Whether a character belongs to a number. A number may contain the sign of its exponent, and the
 // letters of a hexadecimal number.
 bool IsInNumber(char c) { return IsInWord(c) || c == '+' || c == '-'; }
 

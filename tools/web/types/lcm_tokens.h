@@ -15,7 +15,7 @@ struct LcmToken {
   int line = 0;
   /// The lines of comment directly before the token, joined by spaces.
   std::string comment_before;
-  /// The comment behind the token on the same line.
+  /// The comment after the token on the same line.
   std::string comment_behind;
 };
 

@@ -20,8 +20,8 @@ constexpr int kUntouched = 0;
 constexpr int kUnderWay = 1;
 constexpr int kComplete = 2;
 
-/// Whether the type `named` of a member of the struct `user` means the struct `type`. A name
-/// without a package means a struct of the same package.
+/// Whether `named` means the struct `type`. `named` is the type of a member of the struct `user`. A
+/// name without a package means a struct of the same package.
 bool Means(std::string_view named, const LcmStruct& user, const LcmStruct& type) {
   if (named.find('.') != std::string_view::npos) return named == type.FullName();
   return named == type.name && user.package == type.package;
@@ -78,7 +78,7 @@ std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
   return size;
 }
 
-/// Computes fingerprint and size of a struct. First computes those of the structs in it.
+/// Computes the fingerprint and the size of a struct. First does the same for the structs in it.
 void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
   if (states[place] == kComplete) return;
   LcmStruct& type = structs_[place];

@@ -24,7 +24,7 @@ class LcmTypes {
   const LcmStruct* WithFingerprint(std::int64_t fingerprint) const;
   /// The type of a message, by its first 8 bytes; nullptr if it is unknown.
   const LcmStruct* TypeOf(Bytes message) const;
-  /// The struct of a member. @pre the member is not a primitive
+  /// The struct that is the type of a member. @pre the member is not a primitive
   const LcmStruct& StructOf(const LcmMember& member) const { return structs_[member.nested]; }
   /// Size of a member on the wire; nullopt if it varies, or no message has room for it.
   std::optional<std::size_t> FixedSize(const LcmMember& member) const;
@@ -38,7 +38,7 @@ class LcmTypes {
 /// Size of the fingerprint with which each message begins, in bytes.
 inline constexpr std::size_t kFingerprintBytes = 8;
 
-/// The types of lcmtypes/, whose texts are in the program.
+/// The types in the files of lcmtypes/. The program contains the texts of these files.
 const LcmTypes& FoglineTypes();
 
 }  // namespace fogline::web

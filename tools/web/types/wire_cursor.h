@@ -25,9 +25,9 @@ struct Extent {
   std::size_t count = 1;  // number of elements; 0 if any dimension is 0
 };
 
-/// A place in a message. Each function reads a value and advances behind it. If the message does
-/// not contain the value, the function returns nullopt or false, and the cursor must not be used
-/// further.
+/// A position in a message. Each function reads a value, and moves to the position after it. If the
+/// message does not contain the value, the function returns nullopt or false, and the cursor must
+/// not be used further.
 class WireCursor {
  public:
   explicit WireCursor(Bytes message) : rest_(message) {}

@@ -40,7 +40,10 @@ function takePending({lines}) {
   pending = null;
 }
 
-/** Keeps the reason of a refusal. A marker of an earlier run does not come into the next run. */
+/**
+ * Stores the reason of a refusal. When a run begins, deletes the reason and the marker of the
+ * previous run.
+ */
 function keepRefusal({refused, stage}) {
   if (refused) refusal = `${pending ? `The marker “${pending.text}” was not saved` : "This had no effect"}: ${refused}.`;
   if (stage !== "driving" || last.stage === "driving") return;
@@ -48,7 +51,7 @@ function keepRefusal({refused, stage}) {
   pending = null;
 }
 
-/** Shows the condition and what happens now. A break is counted down. */
+/** Shows the condition and the present stage. In a break, counts the remaining time down. */
 function showWords(state) {
   counted = `${state.state} ${state.stage}`;
   stopCount();

@@ -19,7 +19,7 @@ function takeToken() {
 /**
  * Calls onState with each state of the session, and onBroken(words) when the connection breaks or
  * the program ends.
- * @returns a function that sends an object, and returns whether it could
+ * @returns a function that sends an object, and returns false if there is no connection
  */
 export function connect(onState, onBroken) {
   const token = takeToken();

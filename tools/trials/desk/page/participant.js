@@ -26,8 +26,8 @@ function scaleOf(item, index) {
   const marks = [];
   for (let i = 0; i <= steps; ++i) {
     // The value is rounded to 12 digits, because in binary 0.1 + 0.2 is not exactly 0.3. The last
-    // mark is exactly the end of the scale, because a step such as 0.1428571429 only nearly divides
-    // the scale.
+    // mark is set to the end of the scale, because a rounded step, such as 0.1428571429, does not
+    // divide the scale exactly.
     const value = String(i === steps ? item.max : Number((item.min + i * item.step).toPrecision(12)));
     marks.push(make("label", {},
       make("input", {type: "radio", name: `item-${index}`, value}), value));
@@ -61,7 +61,8 @@ function markMissing(scale, isMissing) {
 
 /**
  * Whether each scale has an answer. Text may be missing. Marks the scales without an answer, and
- * moves the focus to the first of them. A browser's own message would cover the scale.
+ * moves the focus to the first of them. The inputs have no attribute `required`, because the
+ * browser's own message would cover the scale.
  */
 function hasAllAnswers(form) {
   const scales = [...form.querySelectorAll("[role=radiogroup]")];

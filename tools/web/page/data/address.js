@@ -1,5 +1,5 @@
-// The fragment of the page's address: "#step=190" is the shown step, "#run=..." its run in a live
-// view, "#token=..." gives access.
+// The fragment of the page's address. "#step=190" is the shown step. "#run=..." is the id of its
+// run in a live view. "#token=..." gives access.
 
 const TOKEN = "fogline.token";
 
@@ -10,7 +10,10 @@ export function readFragment(fragment) {
   return {step, run: parts.get("run") ?? "", token: parts.get("token") ?? ""};
 }
 
-/** The fragment of an address that shows a step again. @param run "": the step of a log */
+/**
+ * The fragment of an address that shows this step.
+ * @param run the id of a live run; "": the step is of a log
+ */
 export function fragmentOf(step, token, run = "") {
   const parts = Object.entries({token, run}).filter(([, value]) => value)
     .map(([name, value]) => `${name}=${encodeURIComponent(value)}&`);

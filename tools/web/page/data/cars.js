@@ -1,7 +1,7 @@
 // Computes the cars on the road at a moment, from the messages of a step. It draws nothing.
 
 // If a car brakes without its brake pedal, its brake lamps may shine from 0.7 m/s2 of deceleration
-// on, and must shine from 1.3 m/s2 on (UN R13-H, 5.2.22.4).
+// on, and must shine from 1.3 m/s2 on (UN R13-H, 5.2.22.4). The page uses the first value.
 export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
 const STANDSTILL_MPS = 0.1;  // slower than a person walks; our choice
 const CONTRAST_AT_VISIBILITY = 0.05;  // by the definition of the meteorological optical range
@@ -14,9 +14,9 @@ export function extinction(visibility_m) {
 const brakes = (acceleration_mps2) => acceleration_mps2 <= -BRAKE_LAMPS_FROM_MPS2;
 
 /**
- * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}]. front_m is the place of
- * the front bumper relative to the host's front bumper. `ahead_s` is the time since the step, for
- * which the cars drive on at their speeds. This time is so short that no car passes another car.
+ * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}]. front_m is the position
+ * of the front bumper relative to the host's front bumper. `ahead_s` is the time since the step.
+ * The cars drive on at their speeds for this time. It is so short that no car passes another car.
  */
 export function carsOf(truth, ahead_s = 0) {
   const place = (position_m, speed_mps) =>

@@ -59,8 +59,8 @@ export class Clock {
   }
 
   /**
-   * Pauses, or plays if the time is paused or follows a live run that has ended. @param isOver
-   * whether a live run has ended
+   * Pauses, or plays if the time is paused or follows a live run that has ended.
+   * @param isOver whether a live run has ended
    */
   toggle(first, last, isOver) {
     if (this.state === "paused" || (this.state === "live" && isOver)) this.play(first, last);

@@ -60,7 +60,7 @@ export class LiveStore {
     this.firstStep = 0;
     this.lastStep = -1;
     this.arrived_ms = 0;        // wall clock of the server at the newest step
-    this.wasSilent = false;     // whether all processes have been silent since the newest step
+    this.wasSilent = false;     // whether the run was silent for AWAY_MS after the newest step
     this.taken_ms = 0;          // clock of the page at the newest step
     this.count = 0;
     this.seenStep_s = null;
@@ -101,8 +101,8 @@ export class LiveStore {
   }
 
   /**
-   * Keeps a message that does not belong to one step. Its step and time never go back: if they are
-   * smaller than those of the message before, the store uses the ones of that message.
+   * Keeps a message that does not belong to one step. The steps and times of the stored messages
+   * never decrease: a smaller step or time is replaced by that of the message before.
    */
   keepControl(source, channel, {step, time_s}, bytes) {
     const track = this.track(source, channel);
@@ -180,8 +180,8 @@ export class LiveStore {
   }
 
   /**
-   * The messages at a step: {NAME: message}; null before the first step. They are the newest up to
-   * this step, one of each channel that has a message in every step.
+   * The messages at a step: {NAME: message}; null before the first step. The result has the
+   * newest message up to this step of each channel with a message in every step.
    */
   frame(step) {
     if (this.lastStep < 0) return null;

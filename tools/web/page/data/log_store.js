@@ -67,8 +67,8 @@ export class LogStore {
   }
 
   /**
-   * Fetches a chunk. One chunk is fetched at a time. If several chunks wait, only the one that was
-   * wanted last is fetched.
+   * Fetches a chunk. One chunk is fetched at a time. If several chunks wait, only the chunk that
+   * was requested last is fetched.
    */
   want(number) {
     if (this.fetching === number) return;
@@ -129,7 +129,7 @@ export class LogStore {
 
   /**
    * The values of a field that seldom changes, over the whole log: the first value, and each value
-   * that differs from the one before it. So at() gives the exact value, however long the log is.
+   * that differs from the value before. So at() gives the exact value, however long the log is.
    */
   changes(channel, path) { return this.fetchWhole(channel, path, {changes: true}); }
 

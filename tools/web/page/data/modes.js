@@ -86,8 +86,8 @@ export function sideSpans(modes, lambdas, from, to, end) {
 }
 
 /**
- * The time at which the side that drives at `time` began to drive; null if it drives from the
- * first value on. `modes` and `lambdas` as in sideSpans().
+ * The time at which the side that drives at `time` began to drive; null if this side has driven
+ * since the first value. `modes` and `lambdas` as in sideSpans().
  */
 export function drivingSince(modes, lambdas, time) {
   const {times: modeTimes, values: modeValues} = modes;
@@ -127,8 +127,8 @@ export function requestAt(times, modes, time, lead_s) {
  */
 export function requestSpans(modes, from, to, end) {
   const {times, values} = modes.within(from, to);
-  // Emergency braking may have begun before `from`. The mode before the braking says whether a
-  // request is open.
+  // Emergency braking may have begun before `from`. Its mode does not say whether a request is
+  // open. The mode before the braking says this.
   let before = times.length > 0 ? upTo(modes.times, times[0]) : -1;
   while (before >= 0 && modeOf(modes.values[before]).hides) --before;
   let open = Boolean(before >= 0 && modeOf(modes.values[before]).asks);

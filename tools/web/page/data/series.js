@@ -2,7 +2,7 @@
 
 import {upTo} from "./modes.js";
 
-let versions = 0;  // number of versions of all series
+let versions = 0;  // the newest version number of all series
 
 /**
  * Columns of values, with NaN where the series `valid` is 0. At these times the sensor has no

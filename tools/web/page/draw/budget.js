@@ -6,8 +6,8 @@
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
 const LOOK_EVERY_MS = 500;
-// Number of successive fast looks after which the page draws more. If drawing more is then too
-// slow, this number is doubled, up to MOST_PATIENCE.
+// The page draws more after this number of successive checks in which the frames were fast. If
+// drawing more is then too slow, this number is doubled, up to MOST_PATIENCE.
 const CALM_LOOKS = 10;
 const MOST_PATIENCE = 320;
 const HIDDEN_MS = 1000;     // a longer time between frames means that the page was hidden

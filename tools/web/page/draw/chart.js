@@ -47,9 +47,9 @@ export function widened(low, high, least) {
 }
 
 /**
- * Makes a chart in `element`. @param options {theme, height, lines: [{stroke, dash, width, paths}],
- * valueRange(chart, low, high), timeAxis, top, below(chart), above(chart), onPick(time),
- * onSpan(from, to), onWhole()}
+ * Makes a chart in `element`.
+ * @param options {theme, height, lines: [{stroke, dash, width, paths}], valueRange(chart, low,
+ * high), timeAxis, top, below(chart), above(chart), onPick(time), onSpan(from, to), onWhole()}
  */
 export function makeChart(element, options) {
   const {theme, lines} = options;

@@ -34,7 +34,7 @@ export function timeDecimals(step_s) {
 
 /**
  * A label of a time axis whose labels are increment_s apart: "30 s", "5 min", "2 h".
- * @param decimals of a label in seconds
+ * @param decimals number of decimals of a label in seconds
  */
 export function timeTick(time_s, increment_s, decimals) {
   if (increment_s < 60) return `${decimal(time_s, decimals)}${SPACE}s`;

@@ -1,8 +1,8 @@
 // The sounds of the page, by WebAudio: no file is loaded. A browser lets a page make sounds only
 // after the person has pressed something on the page.
 
-// Tones in Hz and times in s. Our choice: a person hears two alternating tones even in noise, and
-// even if the person hears one of the tones badly. The urgent request is faster and higher.
+// Tones in Hz and times in s. We chose two alternating tones, because a person hears them even in
+// noise, and even if the person hears one of them badly. The urgent request is faster and higher.
 const REQUEST = {tones: [660, 880], tone_s: 0.14, every_s: 0.9, gain: 0.25};
 const URGENT = {tones: [880, 1175], tone_s: 0.1, every_s: 0.35, gain: 0.35};
 const CHANGE = {tones: [523], tone_s: 0.15, gain: 0.15};

@@ -77,7 +77,8 @@ export function calibrationOf(storage, {id, mapping}) {
     const kept = JSON.parse(storage.getItem(KEPT_UNDER + id));
     if (isComplete(kept)) return kept;
   } catch {
-    // Another program may have written this entry, or the browser stores nothing.
+    // The entry cannot be read, so it does not count. Another program may have written it, or the
+    // browser stores nothing.
   }
   return mapping === "standard" ? structuredClone(STANDARD) : null;
 }

@@ -18,12 +18,12 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from "./told.js";
 
-// If the mean time between frames is longer than this, the page draws less. It is longer if one of
-// three frames of 60 Hz is missed. The limit is low, because a person waits for the next frame
-// after each input. The page also draws less if inputs are late.
+// If the mean time between frames is longer than this, the page draws less. At 60 Hz the mean time
+// is longer if one of three frames is missed. The limit is low, because a person waits for the next
+// frame after each input. The page also draws less if inputs are late.
 const SLOW_MS = 22;
-// If a press comes within this time after the window got the keyboard focus, it counts as the press
-// that gave the focus to the window.
+// A press within this time after the window got the keyboard focus counts as the press that gave
+// the focus to the window.
 const WITH_FOCUS_MS = 500;
 const GONE_MS = 5000;  // after this time without the server, the page calls goBack()
 
@@ -73,8 +73,9 @@ class Drive {
     document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
-    // If the press has given the focus to the window, the person meant the button “Go on”, which
-    // was in the place of “Begin” until then.
+    // While another window has the keyboard, the page shows “Go on” in the place of “Begin”. A
+    // press on “Go on” gives the focus to this window, and the page shows “Begin” at once. So the
+    // press arrives at “Begin”, which must ignore it.
     byId("begin").addEventListener("pointerdown", ({timeStamp}) => {
       this.isForFocus = timeStamp - this.backAt_ms < WITH_FOCUS_MS;
     });
@@ -142,8 +143,8 @@ class Drive {
     const {key, ctrlKey, altKey, metaKey, repeat, target, timeStamp} = event;
     if (!isDriving(key) || (down && (ctrlKey || altKey || metaKey))) return;
     if (down && target.matches?.("input, select, textarea")) return;
-    // A repeated event is of a key that was pressed before, perhaps when the person was away. It
-    // moves no pedal.
+    // A repeated event belongs to a key that was pressed before, perhaps while the person was away.
+    // So it moves no pedal.
     if (!repeat && !this.person.key(key, down, timeStamp)) return;
     event.preventDefault();  // the arrows would scroll
     if (repeat) return;
@@ -234,8 +235,8 @@ class Drive {
     this.refused = state === "taken" && this.state === "taken";
     if (this.refused) this.person.set("begun", false);
     this.state = state;
-    // The server says that it got no input for some time, even if the page itself has noticed no
-    // pause.
+    // "lost": the server got no input from this page for some time, even if the page itself has
+    // noticed no pause. So the person was away.
     if (state === "lost") this.person.leavePedals();
     // A lost seat still belongs to this page: the page's next frame takes the seat again.
     this.set("seated", state === "yours" || state === "lost");
@@ -269,8 +270,8 @@ class Drive {
   }
 
   /**
-   * Updates `told`, the description of who drives, from the newest messages, and returns it.
-   * Messages also come while no frame is drawn.
+   * Updates `told`, the description of who drives, from the newest messages, and returns it. set()
+   * also calls this function, because messages come between two frames, too.
    */
   tell() {
     const {frame = {}} = this.newest ?? {};
@@ -335,7 +336,7 @@ class Drive {
     const answer = leaves ? LEAVING : why === "" ? this.answer.words(state, now) : "";
     say(byId("away"), words);
     byId("away").hidden = words === "" || answer !== "";
-    // The page has room for only one of these texts.
+    // The page has room for only one of the texts "away", "answer" and "meanwhile".
     byId("meanwhile").hidden = !state.asks || words !== "" || answer !== "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";

@@ -7,8 +7,8 @@
 // and answers with the number of this message. Then a DRIVER_COMMAND comes, which the driver role
 // has made from this input or from a newer one. The measurement ends when the page has drawn the
 // next frame (requestAnimationFrame). So it contains the time in page, seat and network, the wait
-// of the driver role for its next step, and the drawing. It does not contain the times of keyboard
-// and screen.
+// of the driver role for its next step, and the drawing. It does not contain the delays of the
+// keyboard and of the screen.
 
 export const WARN_ABOVE_MS = 100;
 export const LATE_ABOVE_MS = 40;  // the page then draws less; goal for the 95th percentile: 50 ms
@@ -25,7 +25,7 @@ export class Latency {
     this.values = [];
     this.recent = [];      // {value, at_ms} of the newest WARN_OF measurements
     this.count = 0;
-    this.unsent = null;    // the newest measurement, until a frame has it
+    this.unsent = null;    // the newest measurement, until a frame reports it
     this.unjudged = [];    // measurements since takeLate() last judged
   }
 
@@ -43,7 +43,7 @@ export class Latency {
   /** Whether the page warns that one of the last measurements was too long. */
   isHigh(now_ms) { return this.highest(now_ms) > WARN_ABOVE_MS; }
 
-  /** The newest measurement in ms for the next frame; null if an earlier frame has it. */
+  /** The newest measurement in ms for the next frame; null if an earlier frame has reported it. */
   takeUnsent() {
     const value = this.unsent;
     this.unsent = null;
@@ -88,7 +88,8 @@ export class Latency {
   }
 
   /**
-   * Call this when a frame was drawn. @return the measurement that ends with this frame, or null
+   * Call this when a frame was drawn.
+   * @return the measurement that ends with this frame, or null
    */
   drawn(now_ms) {
     if (!this.probe?.applied) return null;

@@ -1,12 +1,12 @@
-// The newest messages of the run that the participant's page needs. It stores no history.
+// The newest messages of the run that the participant's page needs. Older messages are not stored.
 
 import {headerOf} from "../data/catalogue.js";
 
 const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
 
 /**
- * The page to open when the server has ended; "": no other page is opened. The fragment has it as
- * "back=URL". The URL must be an http page of this machine, or of the machine of the server. Any
+ * The page to open when the server has ended; "": no page is opened. The fragment names this page
+ * as "back=URL". The URL must be an http page of this machine, or of the machine of the server. Any
  * other URL is ignored, because an address can be forged.
  */
 export function backOf(fragment, hostname) {

@@ -14,7 +14,7 @@ const LEAST_PRESS_MS = 120;
 // Smaller changes of raw values are noise: analogue sticks at rest move less than this.
 const NOISE = 0.01;
 // If the page has not looked at the devices for this time, the server has counted the page as
-// silent (Seat::kSilent). So the person was away.
+// silent (Seat::kSilent). So the page then handles the pedals as if the person had been away.
 const SILENT_MS = 300;
 // When a person comes back, a pedal below this share of its travel counts as released. Our choice:
 // the rest position of consumer pedals moves by 1 to 2 %, which is less. A person hardly feels 5 %.
@@ -95,8 +95,9 @@ export class Person {
   }
 
   /**
-   * Takes a change of a key. @param down whether the key is pressed. @return whether the page uses
-   * the key
+   * Handles a change of a key.
+   * @param down whether the key is pressed
+   * @return whether the page uses the key
    */
   key(key, down, now_ms) {
     // While the person is away, keys are ignored. When the person comes back, all keys count as

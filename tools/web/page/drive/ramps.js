@@ -6,8 +6,9 @@
 // key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// Time in s by which a pedal is ahead of its ramp. Our choice: the pedal is then 3 % of its travel
-// ahead (RATES.press_ps x FIRST_S), and a person does not feel this. FIRST_S equals step_s of
+// Time in s. When a key is pressed or released, its pedal moves at once as far as it otherwise
+// moves in this time. Our choice: for a pressed key this is 3 % of the pedal's travel
+// (RATES.press_ps x FIRST_S), and a person does not feel this. FIRST_S equals step_s of
 // scenario/drive.json.
 export const FIRST_S = 0.02;
 

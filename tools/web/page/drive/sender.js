@@ -3,8 +3,8 @@
 
 export const KEEP_ALIVE_MS = 50;  // longest time between frames; see Seat::kSilent
 export const LEAST_GAP_MS = 4;    // at most 250 frames a second
-// Interval at which the page reads the devices, and checks whether a frame is due. A browser does
-// not report that a pedal has moved, so on average half of this time is part of the latency.
+// Interval at which the page reads the devices, and checks whether a frame is due. A browser sends
+// no event when a pedal moves. So on average the latency contains half of this time.
 export const LOOK_EVERY_MS = 8;
 const MOST_NAME_BYTES = 64;
 const MOST_AXES = 16;
@@ -13,7 +13,7 @@ const SAME = 1e-4;                // a smaller change of a pedal or an axis caus
 
 const utf8 = new TextEncoder();
 
-/** The beginning of a text that has at most this many bytes as UTF-8. */
+/** The beginning of a text: whole characters, together at most this many bytes of UTF-8. */
 export function cutText(text, mostBytes = MOST_NAME_BYTES) {
   let cut = "";
   let bytes = 0;
@@ -29,8 +29,9 @@ const within = (value, least, most) =>
   Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : least;
 
 /**
- * The frame for an input. @param age_ms time since the newest input of the device. @param
- * latency_ms the measurement that no earlier frame has, or null
+ * The frame for an input.
+ * @param age_ms time since the newest input of the device
+ * @param latency_ms a measurement that no earlier frame has reported; null if there is none
  */
 export function inputFrame(input, sequence, age_ms, latency_ms) {
   const {present, throttle, brake, axes, buttons, device} = input;

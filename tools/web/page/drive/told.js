@@ -79,8 +79,9 @@ export function countdown(request, time_s, lead_s) {
   return {left_s, share: lead_s > 0 ? left_s / lead_s : 0, atMost: !begin_known};
 }
 
-// Times after a press at which the words appear and disappear. The run answers a button within a
-// few steps, so the words appear only if no answer has come. A person has time to read them.
+// Times in ms after a press. The words appear at `after`. The run answers a button within a few
+// steps, so an answer would have come before this time. The words disappear at `until`, so that a
+// person has time to read them.
 const ANSWER_MS = {after: 1000, until: 6000};
 
 /** The text for a button that may have no effect; undefined for any other button. */

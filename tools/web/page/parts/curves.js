@@ -18,12 +18,14 @@ const MINUTE_S = 60;
 // Pause between drawings: `factor` times as long as the last drawing took, but at most `most_ms`.
 const REST = {most_ms: 1000, factor: 5};
 const LEAST_SPAN = 1e-3;  // least range of a value axis, as a share of the largest absolute value
-const NEAR_S = 10;  // fetched before and after a time; a longer part may have only the extremes
+// The value at a time comes from a short series: from NEAR_S before the time to NEAR_S after it. A
+// longer series may have only the extremes of each span.
+const NEAR_S = 10;
 const KEEP = "fogline.fields";
 const valueId = (index) => `value-of-field-${index}`;
 const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // names of values, by field
 
-/** The reader's last choice, if the browser has stored it. */
+/** The reader's last choice if the browser has stored it; otherwise FIRST_FIELDS. */
 function keptFields() {
   try {
     const kept = JSON.parse(localStorage.getItem(KEEP));
@@ -234,7 +236,7 @@ export class Curves {
     }
   }
 
-  /** All series of the charts, at a moment. A log store fetches those that it does not have. */
+  /** All series of the charts, at a moment. A log store fetches the series that it lacks. */
   fetch({time}) {
     const [from, to] = this.range(time);
     return this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field)]);
@@ -271,8 +273,8 @@ export class Curves {
   valueAt({channel, path, isStepwise}, time) {
     const series = this.seriesOf({channel, path}, ...this.range(this.moment.time));
     if (series.whole) return series.at(time);
-    // The series has only the extremes of each span. So the value comes from a short part, or from
-    // the messages of the step.
+    // The series of a long time has only the extremes of each span. So the value comes from the
+    // series of a short time around `time`, or from the messages of the step.
     if (!isStepwise) {
       const near = this.seriesOf({channel, path}, time - NEAR_S, time + NEAR_S);
       return near.whole ? near.at(time) : NaN;
@@ -282,8 +284,8 @@ export class Curves {
   }
 
   /**
-   * Shows the values at the cursor, or without a cursor the values of the shown moment, with about
-   * four digits.
+   * Shows values with about four digits: the values at the cursor or, without a cursor, the values
+   * of the shown moment.
    */
   sayValues({frame, time, run}) {
     const hover = this.hover;

@@ -10,9 +10,10 @@ import {
 
 import {carsOf, extinction} from "../data/cars.js";
 
-// Replaces the fog of three.js, which has another law, and uses the depth instead of the distance.
-// `fogNear` contains sigma in 1/m. Each pixel computes its own distance, because the ground has few
-// vertices. Light adds up linearly, so the colours are made linear before they are mixed.
+// Replaces the fog of three.js. That fog follows another law, and depends on the depth instead of
+// the distance. `fogNear` contains sigma in 1/m. Each pixel computes its own distance, because the
+// ground has few vertices. Light adds up linearly, so the colours are made linear before they are
+// mixed.
 const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
 ShaderChunk.fog_pars_vertex = chunk("varying vec3 vFogPlace;");
 ShaderChunk.fog_vertex = chunk("vFogPlace = mvPosition.xyz;");
@@ -169,7 +170,10 @@ export class DriverView {
     return true;
   }
 
-  /** @param moment {frame, ahead_s, length_m}. @param share share of the pixels that are drawn */
+  /**
+   * @param moment {frame, ahead_s, length_m}
+   * @param share resolution of the picture, as a share of the full resolution
+   */
   draw({frame: {TRUTH: truth}, ahead_s, length_m}, share) {
     if (!truth || !this.fit(share)) return;
     const eye_m = truth.host_position_m + ahead_s * truth.host_speed_mps - EYE.behind_front_m;

@@ -80,7 +80,7 @@ function shownRun(traffic, run) {
   return run ? runs.find(({run_id}) => run_id === run.run_id) : runs.at(-1);
 }
 
-/** Whether the runner has said that the shown run has ended, also before its last step. */
+/** Whether the runner has said that the shown run has ended. A run can end before its last step. */
 export const hasStopped = (health, run) => Boolean(run) && shownRun(health.traffic, run)?.phase === "STOP";
 
 export class Health {

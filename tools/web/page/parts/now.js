@@ -14,8 +14,8 @@ const LASTS = {
   automation: "The automation has driven for", human: "The human has driven for",
   risk: "The manoeuvre has lasted", unknown: "This has lasted"};
 
-// Reasons for modes that have another reason than the Degree of Conflict. The page shows this
-// reason first.
+// The reasons for a collision warning and for emergency braking. A collision warning shows its
+// reason and then the Degree of Conflict. Emergency braking shows only its reason.
 const REASONS = {
   COLLISION_WARNING: "The car ahead is too near. ",
   EMERGENCY_BRAKING: "A collision is near.",
@@ -53,7 +53,7 @@ const STANDS = "Minimal risk manoeuvre: the car stands";
 const ENDED = "The run has ended";
 
 /**
- * What the page waits for, or how the reader can start a run: {words, command}.
+ * Tells the reader what the page waits for, or how to start a run: {words, command}.
  * @param isKnown whether the page knows the run
  * @param hello {url, follows, waits_for_person} of the server
  */
@@ -64,7 +64,7 @@ function hint(isKnown, {url, follows, waits_for_person}) {
   return {words: "Start one, such as: ", command: `fogline run scenario/dense_fog.json --pace 1${network}`};
 }
 
-/** Shows words and a command. No option of the command is divided between two lines. */
+/** Shows words and a command. A line break never divides an option of the command. */
 function showHint(place, {words, command = ""}) {
   if (place.textContent === words + command) return;
   const parts = command.split(/(--\S+)/).map((part, i) => (i % 2 ? make("span", {class: "option"}, part) : part));

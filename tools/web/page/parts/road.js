@@ -172,8 +172,8 @@ function drawBrakeLamps(pen, {left, width}, lane, theme) {
 }
 
 /**
- * Draws haze over the road. At each place, the opacity of the haze is 92 % of the share of the
- * contrast that is lost in the fog between this place and the host's driver.
+ * Draws haze over the road. The fog between a place and the host's driver removes a share of the
+ * contrast. The opacity of the haze at this place is 92 % of this share.
  */
 function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   const sigma = extinction(truth.fog_visibility_m);

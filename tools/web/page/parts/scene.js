@@ -38,8 +38,8 @@ export class Scene {
 
   /**
    * Draws the moment if it differs from the moment that was drawn last.
-   * @param budget {ratio, every}: share of the pixels that the view draws; it draws each `every`-th
-   * frame
+   * @param budget {ratio, every}: while time goes on, the view has the share `ratio` of its full
+   * resolution, and is drawn in one of `every` frames
    */
   draw(moment, {ratio, every}) {
     const {frame, ahead_s, step, side} = moment;

@@ -158,7 +158,7 @@ export class Why {
     return [end - WINDOW_S, end];
   }
 
-  /** All series of the charts, at a moment. A log store fetches those that it does not have. */
+  /** All series of the charts, at a moment. A log store fetches the series that it lacks. */
   fetch(moment) {
     this.moment = moment;
     const command = (path) => this.shown("HOST_COMMAND", path);
