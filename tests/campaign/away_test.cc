@@ -1,5 +1,5 @@
-// A part of a run is unreachable for longer than the other parts wait by default. The part is a
-// stopped process, or a machine with an unplugged cable.
+// A part of a run is unreachable for longer than the default stall timeout. The part is a stopped
+// process, or a machine with an unplugged cable.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace fogline::test {
 namespace {
 
-// With this option a run waits longer for its roles. The user gives this option if roles may be
-// unreachable for longer than the default time.
+// With this option a run waits longer for its roles. A user needs this option if roles may be
+// unreachable for longer than the default stall timeout.
 const std::vector<std::string> kWaitLonger{"--stall-timeout", "60"};
 
 const Absence kRunner = Stopped(

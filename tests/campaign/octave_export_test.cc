@@ -13,7 +13,7 @@
 namespace fogline::test {
 namespace {
 
-// Prints the bytes of every field in Octave, column by column, in hexadecimal.
+// An Octave script that prints the bytes of every field, column by column, in hexadecimal.
 constexpr const char* kOctave = R"(
   s = load(argv(){1});
   function show(name, x)
@@ -37,7 +37,7 @@ TEST_F(ExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
   std::ofstream(folder_.File("show.m")) << kOctave;
   const Outcome octave = RunCommand({"octave-cli", "--norc", folder_.File("show.m"), mat_});
   ASSERT_EQ(octave.code, 0) << octave.err;
-  // GIVEN the same fields from the log, with a row of numbers for each message
+  // GIVEN the fields of the exported log, read by Fogline, with a row of numbers for each message
   std::vector<std::string> expected;
   for (const auto& [name, field] : FieldsOf(log_)) {
     std::string hex;
@@ -48,7 +48,7 @@ TEST_F(ExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
         fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), field.columns(), hex));
   }
   expected.emplace_back("title F\u00f6hn");
-  // THEN Octave shows the same bytes
+  // THEN Octave has printed the same bytes for each field
   std::vector<std::string> shown;
   std::istringstream lines(octave.out);
   for (std::string line; std::getline(lines, line);) shown.push_back(line);

@@ -1,5 +1,6 @@
 // A hundred runners are killed at random steps. On each of two transports, a hundred runs in one
-// process are killed, too.
+// process are killed, too. Each run is continued, and must have the same result as a run that was
+// not killed.
 #include <gtest/gtest.h>
 
 #include "tests/integration/faults/resume_fixture.h"

@@ -90,7 +90,7 @@ TEST_F(SshHostsTest, WaitForACableThatIsCutFor10s) {
   Background run(RunFrom(lab[0], lab.ssh(), OnLab2({"fusion", "acc"}), {"--pace", "20"}));
   ASSERT_TRUE(IsUnderWay()) << run.Err();
   lab.lab().Unplug(1);
-  std::this_thread::sleep_for(std::chrono::seconds(10));  // how long the machine is unplugged
+  std::this_thread::sleep_for(std::chrono::seconds(10));  // the machine is unplugged for 10 s
   lab.lab().Plug(1);
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());

@@ -29,7 +29,8 @@ class Reader {
             while (!stop.stop_requested()) {
               if (KindOf(client_.Receive()) == 1) ++frames_;
             }
-          } catch (const std::exception&) {  // closed: too few frames are counted
+          } catch (const std::exception&) {
+            // The connection is closed. The frames that have come until then still count.
           }
         }) {}
 
@@ -51,8 +52,8 @@ class Reader {
 /// priority. So if it wakes up late, every process on this processor was late.
 class StallWitness {
  public:
-  /// At 100 Hz a step has 10 ms, and the roles need less than 3 ms. So a shorter stall costs no
-  /// deadline.
+  /// At 100 Hz a step has 10 ms, and the roles need less than 3 ms of it. So if the machine stands
+  /// still for less than kStall, the roles still meet the deadline.
   static constexpr Duration kStall = milliseconds(7);
 
   /// @throws std::runtime_error if this process may not have real-time priority
@@ -133,7 +134,7 @@ TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {
       ++whole;
       continue;
     }
-    // If the machine has stood still, its stall may have cost the deadline.
+    // A missed deadline is allowed if the machine has stood still for kStall or more.
     ASSERT_GE(run.stall, StallWitness::kStall) << run.missed << " deadlines missed with 20 viewers";
   }
   if (whole < kRuns) return MachineLacks("time: it stands still again and again");

@@ -13,7 +13,7 @@ fail() {
   echo "without_npm_test: $*" >&2
   exit 1
 }
-# expect CODE TEXT COMMAND...: the command ends with this code, and says this on stderr.
+# expect CODE TEXT COMMAND...: the command ends with the code CODE, and its stderr contains TEXT.
 expect() {
   local code=0 said
   said=$("${@:3}" 2>&1 >/dev/null) || code=$?
@@ -32,7 +32,7 @@ fogline=build/bin/fogline
 missing="packages of npm were missing when it was configured; install and build: tools/setup run"
 expect 3 "this build has no page, because $missing" "$fogline" view run.lcm
 expect 3 "this build has no charts, because $missing" "$fogline" report run.lcm
-# Other programs can still hear the run: only the page is missing.
+# fogline view still serves other programs: only its page is missing.
 exec 3< <(exec "$fogline" view --no-browser --port 0 2>said)
 view=$!
 read -r -t 60 address <&3 || fail "fogline view --no-browser prints no address: $(cat said)"

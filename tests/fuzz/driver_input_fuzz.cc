@@ -1,5 +1,5 @@
-// The messages of seats to the role driver while a person drives. Input: messages. Each message has
-// the time since the previous message (one byte, in units of 2 ms) and a datagram.
+// The role driver receives arbitrary messages of seats while a person drives. Input: messages. Each
+// message has the time since the previous message (one byte, in units of 2 ms) and a datagram.
 #include <cmath>
 
 #include "services/driver/driver.h"

@@ -58,8 +58,8 @@ class Cutter {
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
   /// Returns the next datagram. In the input, a datagram has its length in two bytes, big endian,
-  /// and then its bytes. It is shorter than this length if the input ends, or if the length exceeds
-  /// the limit for messages.
+  /// and then its bytes. The returned datagram is shorter than this length if the input ends, or if
+  /// the length exceeds the limit for messages.
   runtime::Bytes Datagram();
 
  private:

@@ -1,5 +1,5 @@
-// The code with which a restarted recorder, or a runner that resumes a run, reads the log. Input:
-// the file.
+// Fuzzes the code with which a restarted recorder, or a runner that resumes a run, reads the log.
+// Input: the log file.
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,8 +12,8 @@
 namespace fogline::fuzz {
 namespace {
 
-// The size in bytes of the end of a log, for the tests that read only the end. The sample logs are
-// longer than this size. So the end of a log sometimes has enough messages, and sometimes too few.
+// A number of bytes at the end of a log, for the parameter `tail` of ReadRemains(). The sample logs
+// are longer. So these bytes sometimes show the last complete step, and sometimes not.
 constexpr std::int64_t kShortTail = 2500;
 
 void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
@@ -32,7 +32,9 @@ void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
          "the kept part has whole steps");
 }
 
-/// Checks the part of a log that the recorder keeps, after the whole log was read.
+/// Checks the part of a log that a restarted recorder keeps.
+/// @param remains the result of ReadRemains() after it has read the whole log
+/// @param file has only the kept part
 void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& file) {
   log::EventLogReader events(file);
   std::int64_t count = 0;
@@ -112,9 +114,9 @@ void DemandUsefulRemains(runtime::Bytes bytes) {
     DemandWholeRun(all, kept.path());
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
-    // DemandGoesOn() adds a step to the log. If the last kShortTail bytes gave the right number of
-    // steps before this, they must also give it afterwards. Otherwise DemandGoesOn() reads the last
-    // `size` bytes.
+    // DemandGoesOn() adds a step to the log, and counts the steps again. If the last kShortTail
+    // bytes were enough to count the steps of the old log, they must also be enough for the longer
+    // log. Otherwise DemandGoesOn() reads the last `size` bytes.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {

@@ -20,8 +20,7 @@ bool IsGood(const runtime::MessageSigner& signer, std::string_view channel,
   return signer.Open(channel, message).verdict == runtime::MessageSigner::Verdict::kGood;
 }
 
-/// Demands: if a message has a good verdict, the message was signed with the key, by a role that
-/// may publish this message.
+/// Demands that a message with a good verdict was signed with the key, by one of the roles.
 void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& channel,
                        runtime::Bytes message) {
   const runtime::MessageSigner::Opened opened = signer.Open(channel.name, message);

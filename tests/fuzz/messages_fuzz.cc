@@ -1,5 +1,5 @@
-// The decoding of every message type, from the bytes to the values that a reader gets. Input: an
-// index into kChannels, and the message.
+// Fuzzes the decoding of every message type, from the bytes to the values that a reader gets.
+// Input: an index into kChannels, and the message.
 #include <algorithm>
 
 #include "services/runtime/wire/arrival.h"

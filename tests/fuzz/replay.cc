@@ -29,7 +29,7 @@ constexpr std::size_t kMaxEdits = 4;
 
 using namespace std::string_view_literals;
 
-// Values that readers often handle wrongly, as text and as big-endian numbers.
+// Values that parsers often handle wrongly, as texts and as big-endian numbers.
 constexpr std::string_view kValues[] = {"0"sv,
                                         "-0"sv,
                                         "-1"sv,
@@ -111,8 +111,9 @@ class Mutator {
     }
   }
 
-  /// Replaces a token by another one, deletes it, doubles it, or writes a value over the bytes from
-  /// its beginning on. The new token is a token of another input, or one of kValues.
+  /// Replaces a token of the input, deletes it, doubles it, or overwrites the input from the
+  /// beginning of the token with one of kValues. The replacement is a token of another input, or
+  /// one of kValues.
   void ChangeToken(Input& input) {
     const auto [begin, end] = Token(input);
     Input token(At(input, begin), At(input, end));

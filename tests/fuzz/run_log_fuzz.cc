@@ -103,7 +103,8 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
   }
 }
 
-/// Adds to a log the graph of a run in which only these channels have messages.
+/// Adds a log graph to a log. This graph says that each step of the log has messages on exactly
+/// these channels.
 Input WithLogGraph(const Input& log, const runtime::ChannelSet& channels) {
   const MemoryFile from(log);
   const MemoryFile to;

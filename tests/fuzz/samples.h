@@ -1,4 +1,4 @@
-// Valid messages and logs. Targets make seeds from them.
+// Valid messages and logs. The fuzz targets make their seeds from them.
 #pragma once
 
 #include <cstddef>

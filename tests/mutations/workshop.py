@@ -10,8 +10,8 @@ import subprocess
 import time
 
 # These tests do not run on mutations. A digest changes with every change of a run, so a failed test
-# of a digest does not tell what is wrong. The other tests here do not test C++ code, or are
-# separate programs.
+# of a digest does not tell what is wrong. The other tests of this pattern do not test C++ code, or
+# are separate programs.
 NOT_ASKED = (
     r"[Dd]igest|^unit\.(Python|Page)\."
     r"|^property\.(ClosedLoopAllocates|ConflictMeasuresAllocate|QpAgainst)"
@@ -22,7 +22,7 @@ TARGETS = {
     "property": ["property_tests"],
     "integration": ["integration_tests", "fogline_programs"],
 }
-# A mistake may let a test hang. After this time, in s, the mistake counts as noticed.
+# A mistake may make a test hang. After this time, in s, the mistake counts as noticed.
 LONGEST = 600
 LONGEST_ALL = 3600
 

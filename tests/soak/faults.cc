@@ -85,10 +85,10 @@ class Held {
 };
 
 /// Executes the shell command `begin` on a machine, waits for `seconds`, and executes the shell
-/// command `end`. The run stands still during `begin`: on a busy machine this command may take
-/// longer than the rest of the run. If no message was lost in this time, Lack() waits up to 5 s
-/// longer before `end`, because a busy machine may send messages late. `felt` is a shell command
-/// that succeeds if a message was lost.
+/// command `end`. The run stands still during `begin`, because on a busy machine this command may
+/// take longer than the rest of the run. `felt` is a shell command that succeeds if a message was
+/// lost. If it does not succeed after `seconds`, Lack() waits up to 5 s longer before `end`,
+/// because a busy machine may send messages late.
 /// @return whether a message was lost
 bool Lack(const SoakedRun& run, const Machine& machine, const std::string& begin,
           const std::string& end, double seconds, const std::string& felt) {

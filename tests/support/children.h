@@ -42,8 +42,8 @@ inline std::vector<pid_t> ChildrenOfAnyThread(pid_t parent) {
   return children;
 }
 
-/// Sends a signal to one process, which must exist. For pid 0, kill(2) would signal a process
-/// group.
+/// Sends a signal to one process, which must exist. With pid 0, kill(2) would send the signal to
+/// all processes of the caller's process group.
 inline void SignalOne(pid_t pid, int signal) {
   ASSERT_GT(pid, 0);
   kill(pid, signal);

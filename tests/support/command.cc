@@ -22,8 +22,8 @@ using SteadyClock = std::chrono::steady_clock;
 // each run of a test has a port of its own. A test that needs the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
-/// Makes a new folder below Testing/tmp in the build folder. tools/test removes the folders of
-/// killed tests there.
+/// Makes a new folder below Testing/tmp in the build folder. If a test is killed, its folder stays
+/// there until tools/test removes it.
 std::filesystem::path FreshFolder(const std::string& kind) {
   const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
   std::filesystem::create_directories(scratch);
@@ -56,8 +56,8 @@ Background::Background(const std::vector<std::string>& command) : directory_(Fre
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setpgid(0, 0);
-    // A shell lets its background jobs ignore SIGINT, and programs inherit what they ignore. So the
-    // program gets the default actions.
+    // A shell makes its background jobs ignore SIGINT, and a program inherits the ignored signals
+    // from the process that starts it. So the default actions are restored here.
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
     if (chdir(FOGLINE_SOURCE_DIR) != 0) _exit(127);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
@@ -113,7 +113,8 @@ bool Background::WaitFor(const std::filesystem::path& file, const std::string& t
                          std::chrono::seconds limit) {
   const auto end = SteadyClock::now() + limit;
   while (true) {
-    // A process that ends after this line may still have printed the text.
+    // Checks the process before the file. In the other order, the process could print the text and
+    // end between the two checks, and the function would not find the text.
     const bool may_print_more = SteadyClock::now() <= end && IsAlive(pid_);
     if (Content(file).find(text) != std::string::npos) return true;
     if (!may_print_more) return false;

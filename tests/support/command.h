@@ -13,9 +13,9 @@ namespace fogline::test {
 
 /// The interval at which a test checks a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
-/// A time limit that only ends a test that hangs. It is many times the time that a busy machine
-/// needs to start a program, a Java virtual machine or a browser, to deliver a message, or to
-/// compute a small study.
+/// A time limit that ends only tests that hang. It is many times the time that a busy machine needs
+/// to start a program, a Java virtual machine or a browser, to deliver a message, or to compute a
+/// small study.
 inline constexpr std::chrono::seconds kPatience(280);
 
 /// The folder of the built programs, and the folder of the sources.
@@ -62,13 +62,13 @@ struct Outcome {
   std::string err;
 };
 
-/// Executes a command again and again until its stdout contains all `texts`. On a busy machine a
-/// single execution may not print all of them. @return the last outcome; after kPatience it may
-/// lack a text
+/// Executes a command again and again until its stdout contains all `texts`. On a busy machine, a
+/// single execution may not print all texts. @return the last outcome; after kPatience, it may lack
+/// a text
 Outcome RunUntilItPrints(const std::vector<std::string>& command,
                          const std::vector<std::string>& texts);
 
-/// Waits until a file has `bytes` bytes. @return false after the time limit
+/// Waits until a file has at least `bytes` bytes. @return false after the time limit
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = kPatience);
 
@@ -89,8 +89,8 @@ bool IsAlive(pid_t pid);
 /// does not contain the role.
 pid_t PidOf(const std::string& err, const std::string& role);
 
-/// An empty folder below Testing/tmp in the build folder. The destructor removes the folder;
-/// tools/test removes the folders of killed tests.
+/// An empty folder below Testing/tmp in the build folder. The destructor removes the folder. If a
+/// test is killed, tools/test removes its folder.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -104,8 +104,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// The beginning of a command line, to which a test appends a command. For this command, `make` is
-/// a script that always fails. It simulates a fresh Debian system, which has no make.
+/// The beginning of a command line, to which a test appends a command. This command finds a `make`
+/// that always fails, as if the system were a fresh Debian without make.
 std::vector<std::string> WithoutMake(const ScratchFolder& folder);
 
 }  // namespace fogline::test

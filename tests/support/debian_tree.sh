@@ -5,8 +5,9 @@ make_debian() {
   debootstrap --variant=minbase --include="$2" bookworm "$tree" "$1"
 }
 
-# trust_own_certificates: a network that inspects downloads uses its own certificate. The new system
-# must trust the same certificates as this machine.
+# trust_own_certificates: makes the new system trust the certificates that were added to this
+# machine. If the network inspects encrypted downloads, they come with a certificate of the network.
+# The new system must trust this certificate, or the downloads fail.
 trust_own_certificates() (
   shopt -s nullglob
   for certificate in /usr/local/share/ca-certificates/*.crt; do
@@ -15,8 +16,8 @@ trust_own_certificates() (
   chroot "$tree" update-ca-certificates
 )
 
-# inside FOLDER SCRIPT: runs SCRIPT in FOLDER of the new system, with the environment of a new login.
-# The processes and mounts of SCRIPT end when SCRIPT ends.
+# inside FOLDER SCRIPT: runs SCRIPT in FOLDER of the new system, with the environment of a new
+# login. The processes and mounts of SCRIPT end when SCRIPT ends.
 inside() {
   unshare --mount --pid --fork --kill-child env -i HOME=/root TERM=dumb LANG=C.UTF-8 \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin bash -c '

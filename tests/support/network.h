@@ -37,8 +37,8 @@ class Machine {
   /// command line replaces itself by the command (nsenter executes it), so a signal to the started
   /// process reaches the command.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
-  /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with the
-  /// error text if a line fails
+  /// Runs lines of sh on this machine. @return their output
+  /// @throws std::runtime_error if a line fails; the text of the exception has the error output
   std::string Do(const std::string& script) const;
   /// The path of the network namespace, as `ip link` expects it.
   std::string network() const;
@@ -80,10 +80,12 @@ class Lab {
   void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
   void Plug(std::size_t machine) const { SetPort(machine, "up"); }
 
-  /// From now on the switch sends `per_cent` % of the UDP datagrams from each machine to the next
-  /// machine twice. @throws std::runtime_error if the kernel cannot do this
+  /// From now on the switch copies `per_cent` % of the UDP datagrams of each machine. It sends the
+  /// copies to the next machine (after the last machine comes the first). So the next machine gets
+  /// a copied multicast datagram twice.
+  /// @throws std::runtime_error if the kernel cannot do this
   void RepeatUdp(int per_cent) const;
-  /// The number of datagrams that the switch has sent twice.
+  /// The number of datagrams that the switch has copied.
   std::int64_t RepeatedUdp() const;
 
  private:

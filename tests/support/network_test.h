@@ -51,8 +51,8 @@ class NetworkTest : public testing::Test {
     return Result({code, run.Out(), run.Err()});
   }
 
-  /// The number of lines on stderr, without the warnings that the runner was held up. A busy
-  /// machine causes them in any run.
+  /// The number of lines on stderr, without the warnings that the runner was held up. On a busy
+  /// machine, any run may print these warnings.
   static int LinesBesideDelays(const std::string& err) {
     int lines = 0;
     std::istringstream in(err);

@@ -1,6 +1,7 @@
-// Checks of a sensor's random errors over many seeds and steps. A correct sensor exceeds a bound in
-// one of a million cases. A bound is a quantile of the exact distribution. Only ExpectUniform()
-// uses a distribution that is approximate, and needs many samples.
+// Checks of a sensor's random errors over many seeds and steps. Each check compares a statistic of
+// the errors with bounds. For a correct sensor, the statistic is beyond a bound with a probability
+// of 1e-6. Each bound is a quantile of the statistic's exact distribution. Only ExpectUniform()
+// uses an approximate distribution, which needs many samples.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The verbs of `fogline`, as its help lists them, and the errors of command lines that they refuse.
+// The verbs of `fogline`, as its help lists them, and the errors of command lines that `fogline`
+// refuses.
 #pragma once
 
 #include <gmock/gmock.h>

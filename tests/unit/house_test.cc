@@ -1,5 +1,7 @@
 // These tests check which folder may use which other folder, how many files a folder may have, and
-// that each name has only one meaning.
+// that each name has only one meaning. A room is a folder with its subfolders; a subfolder may be a
+// room of its own. The rooms have an order: the files of a room may use only this room and the
+// rooms before it.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
@@ -34,10 +36,10 @@ struct Room {
   bool of_role = false;
 };
 
-/// Stands for every folder services/NAME that has NAME_main.cc, except services/recorder.
+/// This name stands for every folder services/NAME that has NAME_main.cc, except services/recorder.
 constexpr const char* kRoleFolder = "services/NAME";
 
-/// The rooms, with the folders of the roles in place of the room kRoleFolder.
+/// Replaces the room kRoleFolder by one room for the folder of each role.
 std::vector<Room> WithRoles(std::vector<Room> rooms) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(SourceDirectory() / "services")) {
@@ -230,9 +232,9 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
 }
 
 TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoices) {
-  // A program with more policies or measures (tests/integration/extension) replaces these files,
-  // because they contain the lists of choices. If any other file of a library included a list, the
-  // program would have two definitions of this list.
+  // scenario/sections/decision.h has the lists of choices. A program with more policies or measures
+  // (tests/integration/extension) replaces the library files that include these lists. If a library
+  // had a further file that includes them, the program would have two definitions of a list.
   std::vector<std::string> files;
   for (const auto& file : Sources()) {
     const std::string text = Read(SourceDirectory() / file);
@@ -262,7 +264,8 @@ struct Links {
   std::map<std::string, std::set<std::size_t>> places{{"fogline_lcmtypes", PlacesOf("fogline")}};
 };
 
-/// @param lines "LIBRARY FOLDER,FOLDER... LINKED..." (cmake/fogline.cmake)
+/// @param lines one line "LIBRARY FOLDER,FOLDER... LINKED..." for each library, written by
+/// fogline_write_links() in cmake/fogline.cmake
 Links ReadLinks(const std::string& lines) {
   Links links;
   std::istringstream in(lines);

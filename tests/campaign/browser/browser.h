@@ -29,8 +29,8 @@ inline constexpr ViewSize kPhone{360, 740};
 
 /// The page in a frame of the wanted size, because a window of Chromium is at least 500 pixels
 /// wide. Chromium prints the page only when all documents are loaded. The document of the frame
-/// `hold` is opened and stays unfinished, so it delays the printing. kProbe closes this document at
-/// its end.
+/// `hold` is opened and stays unfinished, so it delays the printing. The last statement of kProbe
+/// closes this document.
 inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
 <iframe id="hold" hidden></iframe>
 <script>document.getElementById("hold").contentDocument.open();</script>

@@ -86,7 +86,7 @@ TEST_F(ReportInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffe
     found.checked = [...boxes()].map((box) => box.checked);
     found.whole = axes();
     found.says = notes("speeds");
-    // The choice stays while runs, views and the time span change.
+    // The boxes stay checked when the reader changes the view of the runs and the time span.
     click("[value=overlaid]");
     await settled();
     click("[value=apart]");

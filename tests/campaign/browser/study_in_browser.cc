@@ -180,7 +180,8 @@ TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
 }
 
 TEST_F(StudyInBrowserTest, CutsNoNameOfARowOff) {
-  // A text that the canvas cuts off has ink in the outermost pixels of the canvas.
+  // If the canvas cuts a text off, the outermost pixels of the canvas have ink. So the script looks
+  // for ink there.
   constexpr std::string_view kInk = R"(
     const hasInk = (canvas, x, y, width, height) =>
         canvas.getContext("2d").getImageData(x, y, width, height).data.some((v) => v > 0);

@@ -34,9 +34,10 @@ def words(line):
 
 
 def apply(diff, file):
-    """Replaces the lines of a diff that begin with a space or "-" by those that begin with a space or "+".
+    """Replaces the old text of a diff in a file by the new text.
 
-    Spaces between words do not count, so a line of the file may be aligned."""
+    Lines that begin with a space or "-" are the old text. Lines that begin with a space or "+" are
+    the new text. Spaces between words do not count, so a line of the file may be aligned."""
     lines = file.read_text().splitlines()
     old = [line[1:] for line in diff.splitlines() if line[0] in " -"]
     new = [line[1:] for line in diff.splitlines() if line[0] in " +"]
@@ -94,7 +95,8 @@ def follow(page, tree):
 def check(tree, printed, written):
     for file, content in written.items():
         assert file.read_text() == content, f"{file} is not formatted"
-    # The tables of the two pages have the new role and channel.
+    # docs/architecture.md has both tables with the new role and the new channel. README.md has only
+    # the table of roles.
     graph = call("build/bin/fogline", "graph", "--markdown", folder=tree).stdout
     assert "`fogline-thermal`" in graph and "| THERMAL |" in graph
     assert graph in (tree / "docs/architecture.md").read_text()
@@ -102,7 +104,7 @@ def check(tree, printed, written):
     # All transports give the same digest. `fogline replay` computes the thermal camera again from a
     # log.
     digests = re.findall(r"\b[0-9a-f]{64}\b", printed[-1])
-    # 4 of them are of the runs, and 4 are of the logs of the runs.
+    # Four digests are of the runs, and four are of the logs of these runs.
     assert len(digests) == 4 + 4 and len(set(digests)) == 1, printed[-1]
     assert re.search(r"^thermal +same: 500 steps$", printed[-1], re.MULTILINE), printed[-1]
     # `fogline metrics` reads a log with the new channel, and `fogline export` writes the channel's
@@ -119,8 +121,8 @@ def check(tree, printed, written):
 def check_order(tree):
     """Checks two wrong orders, which the compiler must refuse.
 
-    In one, the role's row is above the row of a role whose message it reads. In the other, the
-    channel is not in the order of the roles."""
+    In the first, the row of the role thermal is above the row of a role whose message thermal
+    reads. In the second, the channel is not in the order of the roles."""
     graph = (tree / "services/graph.h").read_text()
     row = re.search(r"  ROLE\(thermal,.*\n", graph).group()
     lidar = graph.index("  ROLE(lidar,")

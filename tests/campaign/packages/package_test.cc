@@ -107,7 +107,8 @@ TEST_F(PackageTest, HasTheMessageTypesFromWhichLcmGenMakesThisBuildsTypes) {
   std::vector<std::string> command{"lcm-gen", "-p", "--ppath", Installed("python")};
   command.insert(command.end(), types.begin(), types.end());
   ASSERT_EQ(RunCommand(command).code, 0);
-  // Python knows the fingerprint of truth_t. Every TRUTH message begins with this fingerprint.
+  // The generated Python class gives the fingerprint of truth_t. Every TRUTH message begins with
+  // this fingerprint.
   const Outcome fingerprint = RunCommand(
       {"python3", "-c",
        "import sys; sys.path.insert(0, '" + Installed("python") +

@@ -50,7 +50,8 @@ def inverse(m):
 class Filter:
     """The state is [distance, relative speed, acceleration of the car ahead].
 
-    The values 0 to 2 are those of TRACK."""
+    The measured values have the numbers of TRACK: 0 is the radar's range, 1 the radar's range rate,
+    2 the LiDAR's range."""
 
     def __init__(self, scenario):
         fusion = scenario["fusion"]

@@ -10,8 +10,8 @@ import sys
 
 from exported_run import Differences, Run
 
-# The host's ACC can brake only with 0.1 m/s2. The host approaches a slow car, and two cars follow
-# the host.
+# The host's ACC can brake only with 0.1 m/s2. The host approaches a slow car, so it needs its
+# emergency braking. Two cars follow the host.
 SLOW_CAR = ["/lead/speed_mps=8", "/world/host_gap_m=40", "/world/follower_gap_m=8", "/followers/count=2",
             "/world/end_on_collision=false", "/acc/min_acceleration_mps2=-0.1", "/aeb/enabled=true",
             "/followers/aeb/enabled=true", "/steps=300"]

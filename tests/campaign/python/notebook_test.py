@@ -16,7 +16,8 @@ class NotebookTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             command = ["/usr/bin/jupyter-nbconvert", "--to", "notebook", "--execute",
                        "--output-dir", folder, "--output", "run", str(NOTEBOOK)]
-            # The kernel of Jupyter writes its port and its files below the home folder.
+            # The kernel of Jupyter writes its port and its files below the home folder, so HOME is
+            # a temporary folder.
             environment = {**os.environ, "HOME": folder, "LCM_DEFAULT_URL": "",
                            "PATH": "/usr/bin:/bin"}
             done = subprocess.run(command, env=environment, capture_output=True, text=True)

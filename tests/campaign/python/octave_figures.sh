@@ -13,7 +13,7 @@ cd "$folder"
   --log without.lcm >run.txt
 for run in with without; do "$fogline" export $run.lcm --out $run.mat >export.txt; done
 
-# draw RUNS FOLDER: calls the script.
+# draw RUNS FOLDER: draws the figures of RUNS into FOLDER with tools/export/paper_figures.m.
 draw() {
   octave-cli --norc --path "$root/tools/export" --eval "paper_figures($1, '$2');" 2>err.txt || {
     cat err.txt >&2

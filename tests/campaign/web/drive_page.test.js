@@ -40,9 +40,8 @@ test("the arrows are the pedals, T and G the buttons", async (t) => {
   await page.keyboard.press("g");
   await run.next(({buttons}) => buttons === 2, "the button to give back");
   await run.next(({buttons}) => buttons === 0, "released buttons");
-  // Each time between two messages is within the limit, and there are not too many messages.
-  const times = run.heard.map(({message}) => Number(message.time_us));
-  assert.ok(times.length > 20);
+  // The page has sent many inputs, and none of them is missing.
+  assert.ok(run.heard.length > 20);
   const numbers = run.heard.map(({message}) => message.sequence);
   assert.deepEqual(numbers, numbers.map((_, i) => numbers[0] + i));
 });
@@ -215,7 +214,8 @@ test("the second driver is told that the seat is taken, and may ask again", asyn
   assert.equal(run.heard.some(({message}) => message.brake > 0), false);
   await second.keyboard.up("ArrowDown");
   await page.close();
-  // The seat is free when the server has noticed the end of the first page.
+  // The seat becomes free only when the server has noticed the end of the first page. So the
+  // second page tries again and again.
   await until(() => second.evaluate(() => {
     if (!foglineDrive.person.begun) document.getElementById("begin").click();
     return document.body.dataset.present === "true";
@@ -246,7 +246,7 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   assert.ok(!page.url().includes("token"), page.url());
   const wrong = await open(t, started, drive.replace(/#.*/, new URL(view).hash));
   await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a token"));
-  await wrong.close();  // otherwise it would try again to connect
+  await wrong.close();  // otherwise the page would try to connect again
   // The page's errors about the refused connection are expected.
   wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));
 });
@@ -274,7 +274,8 @@ test("a finger holds the pedals of the page", async (t) => {
   await begin(page);
   await drives(page, true);
   const finger = (id, type) => page.locator(id).dispatchEvent(type, {pointerId: 1, pointerType: "touch"});
-  // The pointer of these events does not exist, so it cannot be captured.
+  // No real pointer belongs to these events, so the page cannot capture a pointer. The test
+  // replaces setPointerCapture() by a function that does nothing.
   await page.evaluate(() => { Element.prototype.setPointerCapture = () => {}; });
   assert.ok(await page.locator("#touch-brake").isVisible());
   await finger("#touch-brake", "pointerdown");
@@ -330,7 +331,8 @@ test("a changed condition of driving shows who drives now, also between two fram
   const page = await open(t, await browser(t), address);
   await begin(page);
   await page.waitForFunction(() => !document.getElementById("take-over").disabled);
-  // A message says that the human drives. Neither a frame nor the next message comes in this call.
+  // The test changes the newest HOST_COMMAND: the human drives. No frame is drawn and no message
+  // comes during this call. So only set() can change the buttons.
   const areDisabled = await page.evaluate(() => {
     const HUMAN = 1;  // host_command_t
     Object.assign(foglineDrive.newest.frame.HOST_COMMAND, {mode: HUMAN, lambda_human: 1});

@@ -37,8 +37,8 @@ async function drive(t, settings = {}, options = {}) {
 }
 
 /**
- * Fails if the run has ended, or if the car stops by itself, because a test would then wait without
- * an end.
+ * Fails if the run has ended, or if `holds` is false. Without this check the test would then wait
+ * without an end.
  */
 function assertGoesOn(run, holds, what) {
   assert.equal(run.code, undefined, `the run has ended: ${run.said}`);
@@ -51,7 +51,8 @@ const says = (page, words) => page.waitForFunction(
 
 /**
  * Follows the car ahead with a time gap while the human drives. The script acts every 40 ms. It
- * takes its values from the newest message of the page. The page shows a person the same message.
+ * takes its values from the newest messages of the page. The page shows the same messages to a
+ * person.
  */
 async function follow(page, run, pedals, until_s) {
   for (;;) {
@@ -187,8 +188,8 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     const inputs = messagesOf(log, "DRIVER_INPUT", "driver_input_t");
     assert.ok(inputs.some(({brake}) => brake > 0.1), "the person has braked");
     assert.equal(new Set(inputs.map(({instance}) => String(instance))).size, 1);
-    // speed.test.js tests the limit of the delay, because it measures what other processes do at
-    // the same time.
+    // This test sets no limit for the delay, because other processes may cause a long delay.
+    // speed.test.js tests the limit, and measures how busy other processes are.
     const latencies = latenciesOf(inputs);
     const median = [...latencies].sort((a, b) => a - b)[Math.floor(latencies.length / 2)];
     t.diagnostic(`${device}: ${latencies.length} delays, median ${median / 1000} ms`);
@@ -316,7 +317,8 @@ test("the first brake lights of the car ahead need no new shader, for which the 
   await begin(page);
   await page.waitForFunction(() => foglineDrive.newest?.frame.TRUTH?.preceding_acceleration_mps2 < -1);
   const after = await page.evaluate(async () => {
-    // Ten frames, because a slow machine draws only every third frame.
+    // On a slow machine the page draws the view in only one of four frames. In ten frames it draws
+    // the view at least twice.
     for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);
     return window.shaders;
   });
@@ -349,8 +351,8 @@ test("the page warns while the picture follows the inputs too late, and not long
   await drives(page, true);
   const warning = page.locator("#latency-warning");
   /**
-   * Presses a key again and again until the page shows a delay that fits, with or without the
-   * warning.
+   * Presses a key again and again until two conditions hold: fits() is true for the delay that the
+   * page shows, and the page shows the warning if and only if `warned` is true.
    */
   const shows = (fits, warned) => until(async () => {
     await page.keyboard.press("ArrowUp");

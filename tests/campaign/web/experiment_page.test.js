@@ -26,8 +26,8 @@ const SCALES = ["mental_demand", "physical_demand", "temporal_demand", "performa
 
 /**
  * Writes the file of the experiment. Each run asks the person to take over from the first step on.
- * If a busy machine sends no input for so long that the deadman acts, the person may take over
- * again.
+ * If a busy machine sends no input for longer than /person/deadman_s, the person counts as absent,
+ * but may take over again.
  */
 function writePlan(folder) {
   const file = path.join(folder, "experiment.json");
@@ -79,7 +79,7 @@ function killWeb({pid}) {
   process.kill(Number(web[0]), "SIGKILL");
 }
 
-/** Waits until the page has left the seat for the participant's page. */
+/** Waits until the browser shows the participant's page again, in place of the seat's page. */
 const comesBack = (page, address) => page.waitForURL(({origin}) => origin === new URL(address).origin);
 
 /**
@@ -112,8 +112,8 @@ function statesOf(t, address) {
 }
 
 /**
- * Kills fogline-web while the person drives. The person drives on when fogline-web runs again, and
- * both pages of the session show this.
+ * Kills fogline-web while the person drives. Expects that the person drives again when fogline-web
+ * runs again, and that both pages of the session are told of the interruption.
  */
 async function killDuring(t, started, page, {session, participant, experimenter}) {
   const states = statesOf(t, participant);
@@ -129,7 +129,8 @@ async function killDuring(t, started, page, {session, participant, experimenter}
   await desk.waitForFunction(() => document.getElementById("lines").textContent.includes("fogline-web runs again"));
   await desk.close();
   await drives(page, true);
-  // The connections that were refused at that time are not errors of the page.
+  // The page logs an error for each connection that was refused while fogline-web was away. The
+  // test expects these errors.
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
 }
 
@@ -175,7 +176,7 @@ async function takePart(t, started, pages, participant, onFirst) {
   assert.equal(session.code, 0, session.said);
 }
 
-/** The cells of a line of a CSV file, as in RFC 4180. The first cell is not empty. */
+/** The cells of a line of a CSV file, as in RFC 4180. The first cell must not be empty. */
 function cellsOf(line) {
   return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,"]*))/g)]
     .map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain);
@@ -237,7 +238,7 @@ function measuresOf(log) {
     ...named("first_request_", run.take_overs[0]), ...named("input_latency_", run.input_latency)]);
 }
 
-/** Checks that the row has the measures of its log, and that the long table has the same values. */
+/** Checks that the row has the measures of its log, and that values.csv has the same values. */
 function assertMeasures(row, log, values) {
   const measures = measuresOf(log);
   for (const [name, value] of Object.entries(measures)) {
@@ -251,7 +252,7 @@ function assertMeasures(row, log, values) {
   assert.deepEqual(metrics.map(({item, value}) => [item, value]), known.map((name) => [name, row[name]]));
 }
 
-/** Checks that the long table has each typed answer, and the marker of the experimenter. */
+/** Checks that values.csv has each typed answer, and the marker of the experimenter. */
 function assertAnswersAndMarker(values) {
   const typed = {};
   for (let participant = 1; participant <= PARTICIPANTS; ++participant) {
@@ -295,7 +296,8 @@ test("four participants drive three conditions; a kill of fogline-web loses noth
     assert.equal(pages.session.said.includes("fogline-web was killed by signal 9"), killed, pages.session.said);
   }
 
-  execFileSync(FOGLINE, ["experiment", "status", file, "--results", results], {stdio: "pipe"});  // all are done
+  // This call fails unless all trials are done.
+  execFileSync(FOGLINE, ["experiment", "status", file, "--results", results], {stdio: "pipe"});
   const tables = path.join(folder, "tables");
   execFileSync(FOGLINE, ["experiment", "export", file, "--results", results, "--out", tables], {stdio: "pipe"});
   const runs = rowsOf(path.join(tables, "trials.csv"));

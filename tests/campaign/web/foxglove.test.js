@@ -19,8 +19,8 @@ const {FOGLINE} = process.env;
 const STEPS = 1000;
 
 /**
- * Opens a client with this subprotocol. @return {client, channels, problems}; the last two grow
- * with each frame
+ * Opens a client with this subprotocol. @return {client, channels, problems}; `channels` and
+ * `problems` grow while the client receives frames
  */
 function connect(t, address, name) {
   const socket = new WebSocket(`ws://${new URL(address).host}/ws`, [name]);
@@ -65,7 +65,8 @@ for (const name of ["foxglove.websocket.v1", "foxglove.sdk.v1"]) {
     const [code] = await once(run, "close");  // all output of the run has come
     assert.equal(code, 0, run.said);
     const {steps, realtime} = JSON.parse(run.said);
-    // The log has every message that was published in time. A role may have skipped a step.
+    // The log has every message that was published in time. A role may have skipped steps. Then the
+    // log lacks the messages of these steps (missed_messages).
     assert.deepEqual([steps, realtime.unlogged_messages], [STEPS, 0]);
     const types = describedTypes();
     const decoders = new Map(graph.channels.filter((channel) => channel.per_step)

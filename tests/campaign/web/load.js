@@ -27,8 +27,8 @@ function ticksOfOurs() {
   const parents = new Map();
   const ticks = new Map();
   for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
-    // The fields after the name, which may have spaces: state, parent, ..., utime, stime, cutime,
-    // cstime.
+    // The name may have spaces. The fields after the name are: state, parent, ..., utime, stime,
+    // cutime, cstime.
     const fields = readText(`/proc/${pid}/stat`).replace(/^.*\) /, "").split(" ").map(Number);
     if (fields.length < 15) continue;
     parents.set(Number(pid), fields[1]);
@@ -40,7 +40,7 @@ function ticksOfOurs() {
 
 /**
  * Measures until the limit is met. A measurement that misses the limit is repeated only if other
- * processes used the processors at the same time; at most five measurements.
+ * processes used the processors at the same time. There are at most five measurements.
  * @param measure returns an object of numbers. @param missed returns the names of the numbers that
  * miss the limit
  */

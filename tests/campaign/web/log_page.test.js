@@ -13,8 +13,8 @@ function shownValues(page) {
 }
 
 /**
- * Two colours in the picture of the road: at the middle of the host, and on the road in front of
- * it.
+ * Colours in the picture of the road: in the middle of the host, halfway to the preceding car, in
+ * the middle of the preceding car, and behind the host.
  */
 function roadColours(page) {
   return page.evaluate(() => {
@@ -98,7 +98,10 @@ test("the numbers of a log of 60,000 steps are those of its steps", async (t) =>
     Number(document.querySelector("#chosen .value").dataset.value) === wanted), gap);
 });
 
-/** The colours of the preceding car in the driver's view, in linear light: its rear, a lamp. */
+/**
+ * The colours of the preceding car's rear and of one of its lamps in the driver's view, in linear
+ * light. `seen` has the colours in the fog, and `clear` the colours without fog.
+ */
 function leadColours(page) {
   return page.evaluate(() => {
     const {view} = foglinePage.scene;
@@ -255,7 +258,8 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
 });
 
 test("Why shows nothing that is later than the shown moment", async (t) => {
-  // 0.3 s is a whole number of microseconds, but its multiples are not all exact: 3 * 0.3 < 0.9.
+  // 0.3 s is a whole number of microseconds, but not every multiple of 0.3 is exact: 3 * 0.3 < 0.9.
+  // Also with such rounding, the charts must end at the shown step.
   for (const step_s of [0.1, 0.3]) {
     const folder = scratch(t);
     const log = recordedRun(folder, [`/step_s=${step_s}`]);

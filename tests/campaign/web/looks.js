@@ -16,14 +16,15 @@ const LOOKS = SIZES.flatMap(([width, height]) => ["light", "dark"].map(
 /** Prepares the context of a page, so that looksWell() can look at the page. */
 export const prepareLooks = (context) => context.addInitScript({path: IN_PAGE});
 
-/** The controls that the Tab key does not reach, or does not mark. */
+/** The controls that the Tab key does not reach, or that do not show their focus. */
 async function missedStops(page) {
   const count = await page.evaluate(() => looks.beginStops());
   // After the last stop, the tab key leaves the page, and then continues with the first stop. Boxes
-  // that scroll may be stops, too.
+  // that scroll may be stops, too. So the loop presses Tab more often than there are controls.
   for (let i = 0; i < count + 8; ++i) await page.keyboard.press("Tab");
-  // A page without the keyboard focus may look different in the next window size. Tab does not
-  // enter a page that has no controls.
+  // A page without the keyboard focus may look different, and the next window size is checked after
+  // this. So if the focus has left the page, a further Tab brings it back. A page without controls
+  // cannot get the focus by Tab.
   const isIn = () => page.evaluate(() => document.hasFocus());
   if (count > 0 && !await isIn()) await page.keyboard.press("Tab");
   const lost = count > 0 && !await isIn() ? ["Tab does not come back to the page"] : [];

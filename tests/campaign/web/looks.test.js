@@ -13,7 +13,7 @@ const {FOGLINE} = process.env;
 
 test("the view of a log looks well", async (t) => {
   const folder = scratch(t);
-  const log = path.join(folder, "paper-seed1-threshold-0.5.lcm");  // as tools/demo calls it
+  const log = path.join(folder, "paper-seed1-threshold-0.5.lcm");  // a name as in tools/demo
   renameSync(recordedRun(folder, ["/arbitrator/take_over/mode=requested",
                                   "/arbitrator/take_over/absent_probability=1"], "paper"), log);
   const page = await open(t, await browser(t), await view(t, [log]), {prepare: prepareLooks});
@@ -37,7 +37,7 @@ test("the view without its key looks well", async (t) => {
   const page = await open(t, await browser(t), address.replace(/#.*/, ""), {prepare: prepareLooks});
   await page.waitForFunction(() => !document.getElementById("problem").hidden);
   await looksWell(page, "no key");
-  // The page's errors about the refused connection are expected.
+  // The page reports errors about the refused connection. The test ignores these errors.
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));
 });
 
@@ -93,12 +93,12 @@ test("the page of a drive looks well", async (t) => {
   assert.equal(await page.locator("#speed").innerText(), "–");
   for (const button of ["#begin", "#take-over", "#give-back"]) assert.ok(await page.locator(button).isDisabled());
   await looksWell(page, "the end of the program");
-  // The page's errors after the end of the program are expected.
+  // The page reports errors after the end of the program. The test ignores these errors.
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
 });
 
-// ---- both pages of an experiment. The test sends the states of a session, so it need not wait for
-// a state.
+// ---- both pages of an experiment. The test itself sends the states of a session to the pages, so
+// it need not wait until a session reaches a state.
 
 const ADDRESS = "http://127.0.0.1:7681/";  // there is no server at this address; the test answers
 const TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css"};

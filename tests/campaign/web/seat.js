@@ -84,7 +84,7 @@ export async function listener(t, address, names = ["DRIVER_INPUT"]) {
   return {
     heard,
     newest: (name = "DRIVER_INPUT") => heard.findLast((one) => one.name === name)?.message,
-    /** Waits for the first new message that fits. */
+    /** Waits for the first new message for which fits() is true. @return this message */
     async next(fits, what, name = "DRIVER_INPUT") {
       const from = heard.length;
       return until(() => heard.slice(from).find((one) => one.name === name && fits(one.message)), what);
@@ -92,7 +92,7 @@ export async function listener(t, address, names = ["DRIVER_INPUT"]) {
   };
 }
 
-/** Opens the participant's page with gamepads that the test can move: `window.fakePads`. */
+/** Prepares the context of a page. The page gets the gamepads that `window.fakePads` lists. */
 export async function withFakePads(context) {
   await context.addInitScript(() => {
     window.fakePads = [];
@@ -126,9 +126,10 @@ export async function begin(page) {
 }
 
 /**
- * Holds the key to take over until the page says who drives, in words of this pattern. A short
- * press could have no effect while a busy machine sends nothing. If the page is silent for so long
- * that the deadman acts, the held key has no effect any more. So the person presses it again.
+ * Holds the key to take over until the page says who drives, in words that match `pattern`. A short
+ * press could have no effect while a busy machine sends nothing. If the page is silent for longer
+ * than /person/deadman_s, the held key has no effect any more. Then the person presses the key
+ * again.
  */
 export async function holdTakeOver(page, pattern) {
   await until(async () => {

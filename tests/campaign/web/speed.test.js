@@ -55,7 +55,7 @@ test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
   const page = await open(t, await browser(t), await view(t, [log]));
   // The driver's view is loaded last. Its first picture takes a second without a graphics
-  // processor.
+  // processor. So the test waits until the view is loaded.
   await page.waitForFunction(() => foglinePage.scene.view && foglinePage.why.modes.length > 0);
   await goTo(page, 7);
   let round = 0;

@@ -121,9 +121,9 @@ export async function browser(t) {
 
 /**
  * Opens an address. `page.trouble` has the page's errors, its violations of the content security
- * policy, and its requests to other hosts. It must be empty at the end of the test. `prepare` gets
- * the page's context before the page is loaded. With `allPorts`, other ports of the same machine do
- * not count as other hosts.
+ * policy, and its requests to other hosts. This list must be empty at the end of the test.
+ * `prepare` gets the page's context before the page is loaded. With `allPorts`, other ports of the
+ * same machine do not count as other hosts.
  */
 export async function open(t, started, address,
                            {size = DESKTOP, prepare = null, allPorts = false, ...options} = {}) {

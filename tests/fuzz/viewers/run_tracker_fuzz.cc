@@ -1,6 +1,6 @@
 // The choice of the run that a live view shows, and the events of this run. Input: messages. Each
 // message has an index into kChannels, the time since the previous message in units of 10 ms, and a
-// flag that tells whether the target takes the events after this message.
+// flag that tells whether TakeEvents() is called after this message.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>

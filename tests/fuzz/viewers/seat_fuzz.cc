@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 256;
 
-/// Checks the messages of a seat. Its rules hold whatever frames the pages send.
+/// Checks the messages of a seat. They must be valid for any frames of the pages.
 class Listener {
  public:
   void Hear(const driver_input_t& message, TimePoint now) {
@@ -35,8 +35,8 @@ class Listener {
   }
   /// @pre Look() of the seat was called at this time
   void DemandHeard(TimePoint now) const {
-    // After kSilent without a frame, the seat sends every kInputEvery. The tolerance is two such
-    // periods.
+    // After kSilent without a frame, the seat sends a message every kInputEvery. The tolerance is
+    // two of these periods.
     Demand(now - heard_at_ < web::Seat::kSilent + 2 * runtime::kInputEvery,
            "the run hears from the seat");
     Demand(next_ > 0, "the run hears from the seat");

@@ -73,15 +73,16 @@ class Frames final : public web::View {
   std::int64_t wrong_ = 0;
 };
 
-/// A server that all inputs share, because it runs until the program ends. If data of a client
-/// remained in the server, these data could change the result of a later input.
+/// One server for all inputs. It runs until the program ends. If the server kept data of a client,
+/// these data could change the result of a later input. So AnswerTo() waits until the server has
+/// removed the client.
 class Served {
  public:
   std::string host() const { return fmt::format("127.0.0.1:{}", server_.access().rules().port); }
 
-  /// Sends the bytes as a client, and then ends the sending direction. @return the answer
-  /// @param opening a request that opens a WebSocket, or ""; the client waits for the answer to
-  /// this request first
+  /// Sends the bytes as a client, and then closes the sending direction. @return the answer
+  /// @param opening a request that opens a WebSocket, or ""; the client sends it first, and waits
+  /// for the answer to it
   std::string AnswerTo(std::string_view opening, std::string_view bytes) {
     tcp::socket client = Connected();
     client.non_blocking(true);
@@ -108,8 +109,8 @@ class Served {
   }
 
  private:
-  /// A client with a connection. A signal of the fuzzer's timer may interrupt the attempt; then it
-  /// is made again.
+  /// A connected client. A signal of the fuzzer's timer may interrupt the attempt to connect; then
+  /// the attempt is repeated.
   tcp::socket Connected() {
     const tcp::endpoint place(asio::ip::address_v4::loopback(), server_.access().rules().port);
     for (;;) {
@@ -121,7 +122,8 @@ class Served {
     }
   }
 
-  /// Sends as many bytes as the kernel accepts.
+  /// Sends as many bytes as the kernel accepts. Closes the sending direction after the last byte,
+  /// or after an error.
   static void Write(tcp::socket& client, std::string_view& bytes) {
     if (bytes.data() == nullptr) return;
     error_code error;
@@ -132,7 +134,7 @@ class Served {
     bytes = {};
   }
 
-  /// Appends the bytes that have come to `answer`. @return success while more bytes may come
+  /// Appends the received bytes to `answer`. @return success as long as more bytes may come
   static error_code Read(tcp::socket& client, std::string& answer) {
     std::array<char, 4096> buffer;
     error_code error;

@@ -18,12 +18,12 @@ constexpr int kSteps = 1000;  // 20 s; each test ends its run earlier
 constexpr double kDeadman_s = 0.3;
 // A test starts its clock when it stops or kills the seat. The seat sends every 40 ms, and the
 // driver answers every 20 ms. So the last input may already be up to 0.06 s old when the clock
-// starts. The fallback may then come up to 0.06 s before the clock shows kDeadman_s.
+// starts. Then the fallback may begin when the clock shows only kDeadman_s - 0.06 s.
 constexpr double kInTime_s = kDeadman_s - 0.06;
-// Two periods of the driver: the last input may come at the end of a step, and the driver notices
-// only in a later step that no further input has come.
+// Two periods of the driver. The time of an input is that of the newest step, so it may be one
+// period too early. The driver checks only once in each step whether a further input has come.
 constexpr double kTwoPeriods_s = 0.04;
-// The longest time for which a busy machine may delay a process.
+// The longest time for which a busy machine may delay a process. The campaign test
 // tests/campaign/web/drive_run.test.js allows only 0.25 s.
 constexpr double kAllowance_s = 3;
 
@@ -60,8 +60,8 @@ class DeadmanInRealtimeTest : public testing::Test {
     return after_s;
   }
 
-  /// Ends the run a second later, and checks its log. The driver's readiness must become 0 soon
-  /// enough after the last input of the person. From then on the pedals must be released.
+  /// Ends the run 1 s later, and checks its log. The driver's readiness must become 0 soon enough
+  /// after the last input of the person. From then on the pedals must be released.
   void ExpectTheLogToShowIt(double deadman_s) {
     run_.WaitForStep(commands_.driver.header.step + 50);
     run_.run().Signal(SIGINT);
@@ -89,7 +89,8 @@ class DeadmanInRealtimeTest : public testing::Test {
     EXPECT_LE(after_s, deadman_s + kTwoPeriods_s + kAllowance_s);
   }
 
-  /// Finds the last DRIVER_INPUT with a person in the log. @return its utime; -1 if there is none
+  /// Finds in the log the last DRIVER_INPUT that says that a person is present. @return its utime;
+  /// -1 if there is none
   std::int64_t LastInput_us() {
     std::int64_t input_us = -1;
     log::EventLogReader reader(run_.log());

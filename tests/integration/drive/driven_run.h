@@ -28,8 +28,8 @@ inline std::vector<std::string> AlwaysAsked() {
           kLateRolesAreNotLost};
 }
 
-/// AlwaysAsked() for a person at a page. On a busy machine fogline-web may take this person for
-/// absent for a moment. Then the person gets authority again.
+/// AlwaysAsked() for a person at a page. On a busy machine fogline-web may count this person as
+/// absent for a moment. With `until_back` the person only has to answer again, and then drives on.
 inline std::vector<std::string> AlwaysAskedAtAPage() {
   std::vector<std::string> changes = AlwaysAsked();
   changes.emplace_back("/person/when_gone=until_back");

@@ -23,7 +23,8 @@
 
 namespace fogline::test {
 
-/// A program in the foreground of a terminal of its own. argv[0] is its path.
+/// A program in the foreground of a terminal of its own. The first word of the command is the path
+/// of the program.
 class InTerminal {
  public:
   explicit InTerminal(const std::vector<std::string>& command) {

@@ -69,8 +69,8 @@ TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
   program.Type(" ");
   ASSERT_GE(commands.WaitFor([&] { return commands.host.mode == arbitration_t::RECOVERING; }), 0);
   // THEN the arrow up accelerates the host more than released pedals, and the arrow down brakes it.
-  // On a busy machine a single tap of 0.12 s may end too early for the thread of the seat, so the
-  // test repeats it
+  // On a busy machine the thread of the seat may miss a single tap of 0.12 s, so the test repeats
+  // the tap
   const auto tap_until = [&](const char* key, const std::function<bool()>& holds) {
     constexpr int kTaps = 5;
     double waited_s = -1;
@@ -141,7 +141,8 @@ TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterAnError) {
 TEST_F(KeysInRealtimeTest, AreRefusedWithoutATerminal) {
   Words command = Drive(100);
   EXPECT_THAT(RunCommand(command).err, HasSubstr("error: --keys: standard input is no terminal"));
-  // The person still drives if --set replaces the whole section /person by one without "drives".
+  // The person still drives if --set replaces the whole section /person by a section without
+  // "drives". So --keys still needs a terminal.
   command.insert(command.end(), {"--set", R"(/person={"override_by":"none"})"});
   const Outcome outcome = RunCommand(command);
   EXPECT_EQ(outcome.code, 2);

@@ -1,5 +1,6 @@
-// A person who overrides the automation by the brake, and a person who leaves the seat and comes
-// back: in real processes, with a replay of what the person did.
+// Tests in real processes. In some runs a person overrides the automation by the brake. In another
+// run the person leaves the seat and comes back. The driver of each run is computed again from the
+// logged inputs.
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ using testing::IsEmpty;
 using testing::Not;
 using Words = std::vector<std::string>;
 
-/// The first object that a verb prints for the log.
+/// The JSON that a verb prints. The verb must succeed.
 nlohmann::json VerbOf(const Words& words) {
   Words command{Program("fogline")};
   command.insert(command.end(), words.begin(), words.end());

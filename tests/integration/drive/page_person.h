@@ -63,9 +63,9 @@ class PagePerson {
           {"device", {{"kind", "keyboard"}, {"name", "Keyboard"}}},
           {"latency_ms",
            12}}.dump());
-      // This client reads nothing, because a wait for a message of the run could last longer than
-      // the silence after which a person counts as absent. The server keeps up to 8 MiB for a page
-      // that does not read.
+      // This client does not read. While it waited for a message of the run, it would send no
+      // inputs, and the person could count as absent. The server keeps up to 8 MiB for a page that
+      // does not read.
       std::this_thread::sleep_for(kEvery);
     }
   }

@@ -102,7 +102,10 @@ def jerk_1s(truths, k):
 
 
 def end_of(request, truths, commands):
-    """The step in which the driver counts as recovered, or the car stands, or the run ends."""
+    """The first step after the request in which one of these conditions holds: the driver has
+    recovered, the automation drives again, or the car stands after a minimal risk manoeuvre.
+
+    Without such a step it is the last step of the run."""
     for one in truths:
         command = commands.get(one["step"])
         if one["step"] <= request or command is None:
@@ -157,8 +160,8 @@ def measures(request, messages, pedal):
             one for one in answers if one["mode"] in (HUMAN, RECOVERING)
             and abs(one["human"] * (offers.get(one["step"], before) - before)) >= 0.01)
 
-    # The fog at the time of the request. If there is no fog at this time, the first fog after the
-    # request.
+    # `fog` is the speed in the first step of a fog. If there is fog at the request, that fog
+    # counts. Otherwise the next fog counts.
     fog = None
     for k in range(inside[-1] + 1):
         if truths[k]["fog"] and (k == 0 or not truths[k - 1]["fog"]):

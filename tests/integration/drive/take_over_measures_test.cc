@@ -26,7 +26,8 @@ std::vector<std::string> ShortStory() {
           R"(/lead/breakpoints=[{"duration_s":7,"speed_mps":20},{"duration_s":3,"speed_mps":12}])"};
 }
 
-/// The person answers by the button, brakes with two positions of the pedal, and accelerates.
+/// The person first moves the brake a little, and answers the request with the button. Then the
+/// person brakes with two positions of the pedal, and accelerates.
 constexpr const char* kStory =
     "0 0 0 0 1; 7 0 0.02 0 1; 7.5 0 0.05 1 1; 7.8 0 0.3 0 1; 9 0 0.6 0 1; 10 0.4 0 0 1";
 

@@ -280,8 +280,8 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   // failed start.
   const std::size_t kills = CountOf("was killed by signal 9", err);
   EXPECT_GE(kills, 1U) << err;
-  // If the test kills a fogline-web before it has opened the seat, this is the first failed start,
-  // and there is no further line.
+  // If the test kills a fogline-web that has not yet opened the seat, this kill counts as the first
+  // failed start. Then there is no further line.
   EXPECT_THAT(CountOf("; it is started again", err), ::testing::AnyOf(kills, kills + 1)) << err;
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }

@@ -19,8 +19,8 @@ namespace fogline::test {
 
 inline constexpr int kParticipants = 4;
 
-/// The answers of one run: Enter, six scales of workload, one scale of sleepiness. They differ for
-/// each participant and run.
+/// The answers of one run: Enter, six scales of workload, one scale of sleepiness. The answers
+/// depend on the sum of participant number and run number.
 inline std::string AnswersOf(int participant, int run) {
   std::string lines = "\n";
   for (int scale = 0; scale < 6; ++scale) {

@@ -41,8 +41,8 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
     // Participant 2: the second run is killed while it is under way.
     Background session(Session(2, 1, "--speed 1"));  // slow, so that the kill comes in time
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
-    // The recorder writes the beginning of the trial, a TRIAL message, during the run. No program
-    // adds it to this log later, because the run is killed.
+    // The test waits until the recorder has written the beginning of the trial (a TRIAL message)
+    // into the log. With an earlier kill, the log might never get this message.
     ASSERT_TRUE(ComesToHave("TRIAL", log)) << session.Err();
     session.Signal(SIGKILL);
     session.Wait();
@@ -246,7 +246,7 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
     while (const auto event = reader.Next()) {
       const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
       // The log loses the commands of 41 steps. So even an old STATUS of the arbitrator shows that
-      // it has published more commands than the log has.
+      // the arbitrator has published more commands than the log has.
       const bool lost = event->channel == "HOST_COMMAND" && step >= 20 && step <= 60;
       if (lost || event->channel == log::kLogSealChannel) continue;
       writer.Write(event->channel, event->utime, event->data);
@@ -260,8 +260,8 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
 }
 
 TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
-  // GIVEN two complete logs without facts of a trial, as after a crash. The test then exchanges
-  // their file names
+  // GIVEN two complete logs without the facts of their trials (TRIAL messages), as after a crash.
+  // The test then exchanges their file names
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
   const std::filesystem::path own = std::filesystem::path(results_) / "participant-01";
   const std::string first = (own / "trial-1-low.lcm").string();
@@ -317,7 +317,8 @@ TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
 
 TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
-  // GIVEN a log under the name of another participant's trial, and one of a run without a trial
+  // GIVEN a log under the name of another participant's trial, and the log of a run that is no
+  // trial
   const std::filesystem::path other = std::filesystem::path(results_) / "participant-02";
   std::filesystem::create_directory(other);
   const std::filesystem::path own = std::filesystem::path(results_) / "participant-01";
@@ -332,7 +333,8 @@ TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
                                 HasSubstr("the log is of trial 1 of participant 1 in condition "
                                           "\"low\""),
                                 HasSubstr("the log has no facts of a trial")));
-  // THEN the export names both logs, and its tables have no answer and no measure of them.
+  // THEN the export names the two wrong logs of participant 2, and its tables have no answer and no
+  // measure of these logs
   const Outcome tables = Experiment("export", {"--out", folder_.File("tables")});
   EXPECT_THAT(tables.err, AllOf(HasSubstr((other / "trial-1-mid.lcm").string() +
                                           ": the log is of trial 1 of participant 1"),
@@ -346,7 +348,7 @@ TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
     EXPECT_EQ(row.at("kss.sleepiness"), "");
     EXPECT_EQ(row.at("collision"), "");
   }
-  // AND participant 2 makes these trials again, and each trial has a new log
+  // AND participant 2 can make all three trials. The wrong logs do not count as trials 1 and 2
   EXPECT_EQ(RunCommand(Session(2)).code, 0);
   EXPECT_THAT(Experiment("status").out, HasSubstr("6 of 12 trials"));
 }

@@ -1,4 +1,4 @@
-// Sessions of `fogline experiment run` that are refused, and what is checked before a run.
+// Sessions of `fogline experiment run` that are refused, and the checks before a run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// A policy and a measure of conflict that are added to their lists and tables take part in every
-// study. One line in the list of names and one row in the table are enough.
+// An added policy and an added measure of conflict take part in every study. Each of them needs
+// only one line in its list of names and one row in its table.
 #include <algorithm>
 #include <map>
 #include <span>

@@ -75,8 +75,8 @@ class BareDriver {
   }
 
   // RUN names each role that is started elsewhere, and the instance of the process that has this
-  // role. The instance is 0 while the run waits for the role. Two processes of one role would
-  // contradict each other.
+  // role. The instance is 0 while the run waits for the role. If another process has this role, the
+  // driver does not take part, because two processes of one role would contradict each other.
   bool IsFree(const run_t& run) const { return DriverOf(run) == 0; }
   bool HasAnother(const run_t& run) const {
     const int64_t driver = DriverOf(run);

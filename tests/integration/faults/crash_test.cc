@@ -23,8 +23,8 @@ class CrashOfARoleTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(CrashOfARoleTest, ChangesNoResultAndIsReported) {
   const std::string& role = GetParam();
-  // The step at which a role is killed depends only on the role's name, so it is the same in every
-  // execution.
+  // The step at which a role is killed depends only on the role's name, so this step is the same in
+  // every execution.
   std::mt19937 random(static_cast<unsigned>(role.size() * 256 + static_cast<unsigned>(role[0])));
   const int step = std::uniform_int_distribution(80, 200)(random);
   WatchedRun watched;
@@ -89,7 +89,7 @@ TEST(CrashTest, WhileTheRunIsJoinedIsRepairedToo) {
   for (const char* role : {"radar", "world", "recorder"}) {
     watched.WaitForState(role, status_t::READY);
   }
-  // THEN the result is that of an undisturbed run
+  // THEN the driver joins, and the run has the result of an undisturbed run
   const Background driver({Program("fogline-driver"), "--lcm-url", watched.url()});
   const auto result = watched.ExpectSameResult();
   EXPECT_EQ(result["restarts"].size(), 3U);
@@ -156,7 +156,8 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesIsRefusedAndToldAndTheRunGoesOn) {
 TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
   WatchedRun watched({}, 1200);
   watched.WaitForStep(100);
-  // `--wait 0` sets no limit for this wait. The usual limit is 60 s, and the run may last longer.
+  // This second process waits for another run, because the run has its acc already. `--wait 0` sets
+  // no limit for this wait. The usual limit is 60 s, and the run may last longer.
   Background stray({Program("fogline-acc"), "--lcm-url", watched.url(), "--wait", "0"});
   EXPECT_TRUE(stray.WaitForErr("fogline-acc: run " + watched.RunId() + " on " + watched.url()));
   EXPECT_TRUE(watched.ExpectSameResult()["restarts"].empty());
@@ -177,7 +178,8 @@ TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   // WHEN the first driver continues, THEN it leaves the run to the second driver
   first.Signal(SIGCONT);
   EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
-  // The first driver would take the role again if the second one had no processor for a second.
+  // On a busy machine the second driver may get no processor time for 1 s. Then the first driver
+  // would take the role again. So the test ends the first driver.
   first.Signal(SIGTERM);
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);
   EXPECT_EQ(second.Wait(), 0) << second.Err();

@@ -56,7 +56,8 @@ class PacedRun {
   Background run_;
 };
 
-/// Kills a role of a run that is well under way, and expects that the run ends as it must.
+/// Kills a role of a run that is well under way. Expects that the run ends with code 3, names the
+/// role, leaves no process, and leaves a readable log.
 /// @return the time until the end
 SteadyClock::duration ExpectAKillEndsTheRun(const std::string& role) {
   PacedRun paced;
@@ -81,7 +82,7 @@ class KilledRoleTest : public testing::TestWithParam<RoleInfo> {};
 TEST_P(KilledRoleTest, EndsTheRunWithinFiveSecondsByNameAndLeavesAReadableLogAndNoProcess) {
   const std::string role(GetParam().name);
   constexpr std::chrono::seconds kLimit(5);
-  // A busy machine may hold up one run, but hardly three.
+  // A busy machine may delay one run, but hardly three in a row.
   constexpr int kTries = 3;
   SteadyClock::duration took = ExpectAKillEndsTheRun(role);
   for (int i = 1; i < kTries && took >= kLimit; ++i) took = ExpectAKillEndsTheRun(role);
@@ -112,8 +113,8 @@ TEST(FaultTest, NoRoleHasASocketOfTheRunner) {
 }
 
 TEST(FaultTest, NamesAProcessThatHangs) {
-  // The error must name the stopped role. If a busy machine gave another role no processor for a
-  // second at the end of the run, the error may name this other role. Then the test tries again.
+  // The error must name the stopped role. If a busy machine gave another role no processor time for
+  // 1 s at the end of the run, the error may name this other role. Then the test tries again.
   constexpr int kTries = 3;
   bool named = false;
   std::string err;
@@ -141,7 +142,7 @@ TEST(FaultTest, EndsCleanlyOnCtrlCWithCode130) {
 
 TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
   constexpr std::chrono::seconds kLimit(5);
-  // A busy machine may hold up one run, but hardly three.
+  // A busy machine may delay one run, but hardly three in a row.
   constexpr int kTries = 3;
   SteadyClock::duration took = kLimit;
   for (int i = 0; i < kTries && took >= kLimit; ++i) {

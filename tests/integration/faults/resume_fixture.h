@@ -27,8 +27,8 @@ inline Words operator+(Words words, const Words& more) {
   return words;
 }
 
-// Steps of a run. A run over the network takes 10 ms for each step, so a test on a busy machine can
-// still kill the run in its middle.
+// Steps of a run. Most runs over the network have the pace 4 (kPaced), at which a step takes 25 ms.
+// So a test on a busy machine can still kill the run in its middle.
 inline constexpr int kResumeSteps = 300;
 
 class ResumeTest : public testing::Test {
@@ -37,7 +37,7 @@ class ResumeTest : public testing::Test {
     return {Program("fogline"), "run",   "scenario/paper.json",
             "--json",           "--set", "/steps=" + std::to_string(steps)};
   }
-  /// The result of an undisturbed run. Its log is whole.lcm.
+  /// The result of an undisturbed run. The log of this run is whole.lcm.
   nlohmann::json Undisturbed(int steps = kResumeSteps) const {
     const Outcome outcome = RunCommand(
         Paper(steps) + Words{"--transport", "direct", "--force", "--log", File("whole.lcm")});

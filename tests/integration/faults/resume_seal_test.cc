@@ -20,8 +20,8 @@ using testing::HasSubstr;
 
 class ResumeOfCompleteLogTest : public ResumeTest {
  protected:
-  /// Copies whole.lcm without its seal, like the log of a runner that was killed after the last
-  /// step.
+  /// Copies whole.lcm without its seal. A runner that is killed after the last step leaves such a
+  /// log.
   void LeaveUnsealed() const {
     Copy(File("whole.lcm"), log_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
@@ -64,7 +64,8 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
 TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   Undisturbed();
   // GIVEN a log that was changed at step 100. When a run continues, all roles publish the last
-  // steps of its log again. Step 100 is before these last steps
+  // steps of its log again. Step 100 is before these last steps, so only the verification of the
+  // whole log finds the change
   const auto resume = [&](std::int64_t steps, const Words& more) {
     Copy(File("whole.lcm"), log_,
          [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {

@@ -62,8 +62,8 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
   ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
   for (const Words& sealed : {Words{}, Words{"--key", key}}) {
     std::filesystem::remove(log_);
-    // GIVEN a driver that was started from another shell. The run lasts six seconds, so that even
-    // on a busy machine the test kills the runner before the end of the run
+    // GIVEN a driver that was started from another shell. An undisturbed run would last 15 s, so
+    // that even on a busy machine the test kills the runner before the end of the run
     SeenRun seen(Paper(kResumeSteps) + Words{"--pace", "2", "--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner is killed, THEN the same driver continues with the next runner
@@ -162,7 +162,8 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
 
 TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   Undisturbed();
-  // GIVEN a log with STATUS messages, such as lcm-logger writes
+  // GIVEN the log of a run in lockstep. This log contains a STATUS message. lcm-logger writes such
+  // logs, and fogline run does not
   status_t status{};
   status.header.run_id = 1;
   std::vector<std::uint8_t> encoded;

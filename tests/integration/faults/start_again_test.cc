@@ -1,5 +1,5 @@
-// A process of a run is killed while the system cannot start it again: its program is missing, or
-// the user may not start another process. One test kills the relay of a run.
+// A process of a run is killed while the system cannot start this process again: the program is
+// missing, or the user may not start another process. One test kills the relay of a run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -25,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A paced run of the paper's scenario, of 10 s.
+/// Runs of the paper's scenario, five times as fast as real time (--pace 5). An undisturbed run
+/// takes 10 s.
 class StartAgainTest : public testing::Test {
  protected:
   std::vector<std::string> Run(const std::string& fogline, const std::vector<std::string>& more) {
@@ -88,7 +89,7 @@ TEST_F(StartAgainTest, WaitsForAProgramThatIsBeingReplaced) {
 TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
   MakeInstallation();
   const std::string fusion = folder_.File("bin/fogline-fusion");
-  // The error must name the fusion. If a busy machine gave another role no processor for a second
+  // The error must name the fusion. If a busy machine gave another role no processor time for 1 s
   // at the end of the run, the error may name this other role. Then the test tries again.
   constexpr int kTries = 3;
   std::string err;
@@ -108,7 +109,8 @@ TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
 
 TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
   if (geteuid() != 0) return MachineLacks("root, to be a user with a limit of processes");
-  // GIVEN a run under its own user id. The test then lets this user start no more processes
+  // GIVEN a run under a user id that no other process has. The test then lets this user start no
+  // more processes
   fs::permissions(folder_.path(), fs::perms::all);
   const std::string user = "4" + std::to_string(getpid() % 100'000);
   const std::vector<std::string> as_user{"setpriv", "--reuid", user,

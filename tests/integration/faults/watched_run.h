@@ -19,7 +19,7 @@
 namespace fogline::test {
 
 // Number of steps of a watched run, and its pace. At this pace each step takes 10 ms. So the run
-// takes 4 s, and a test on a busy machine can still act in its middle.
+// takes 4 s, and a test on a busy machine can still disturb the run in its middle.
 inline constexpr int kSteps = 400;
 inline constexpr int kPace = 10;
 
@@ -138,7 +138,8 @@ class WatchedRun {
     std::vector<std::string> arguments{"--lcm-url", bus_.url(), "--log",
                                        log_,        "--pace",   std::to_string(pace)};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    // On a busy machine new processes may need more than 4 s, which is the usual limit.
+    // The default of --stall-timeout is 4 s. On a busy machine new processes may need more than 4 s
+    // to start, so the test gives them 30 s.
     if (std::ranges::find(more, "--stall-timeout") == more.end()) {
       arguments.insert(arguments.end(), {"--stall-timeout", "30"});
     }

@@ -71,7 +71,7 @@ class HostsTest : public NetworkTest {
     return printed.substr(0, printed.find('\n'));
   }
 
-  // The tests of each kind of connection to other machines. -----------------------------------
+  // Tests for every kind of connection to other machines. -------------------------------------
 
   void ExpectTheDigestOfDirect(const Lab& lab, const std::string& ssh) {
     const auto result =

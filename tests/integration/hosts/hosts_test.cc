@@ -36,7 +36,7 @@ class EnteredHostsTest : public HostsTest {
   }
   const Lab& lab() const { return *lab_; }
   std::string Enter() const { return "sh '" + folder_.File("enter") + "'"; }
-  /// The error text of a run with `ssh` in place of ssh. The run must fail.
+  /// The error text of a run that calls the command `ssh` in place of ssh. The run must fail.
   std::string Failure(const std::string& ssh, const std::vector<std::string>& places) {
     const Outcome outcome = RunCommand(RunFrom(lab()[0], ssh, places));
     EXPECT_EQ(outcome.code, 3) << outcome.err;
@@ -56,8 +56,9 @@ TEST_F(EnteredHostsTest, StartAKilledRoleThereAgain) {
 }
 
 TEST_F(EnteredHostsTest, EndSoonAfterCtrlC) {
-  // The limit is for a busy machine. A machine that is not busy needs less than 5 s. Processes that
-  // a run leaves behind end by themselves 15 s after the stall timeout.
+  // The limit is long enough for a busy machine. A machine that is not busy needs less than 5 s.
+  // Processes that a run leaves behind end by themselves, but only 15 s after the stall timeout of
+  // 30 s. So the limit of 30 s also finds such processes.
   ExpectCtrlCEndsEverything(lab(), Enter(), std::chrono::seconds(30));
 }
 

@@ -69,7 +69,7 @@ class Logger {
   Background process_;
 };
 
-/// A screen of its own for programs with windows.
+/// A virtual screen (Xvfb) for programs with windows.
 class OwnScreen {
  public:
   OwnScreen()
@@ -86,7 +86,7 @@ class OwnScreen {
   Background server_;
 };
 
-/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads lcm-spy's
+/// Debian's lcm-spy on a virtual screen. `fogline spy` starts lcm-spy. SpyProbe reads lcm-spy's
 /// window.
 class Spy {
  public:

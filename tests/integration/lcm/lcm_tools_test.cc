@@ -104,8 +104,8 @@ constexpr std::int64_t kStepsOfSpy = 10;
 
 /// The driver of a run. The driver answers for a step only after lcm-logger has written all earlier
 /// messages. lcm-logger queues 30 messages, and lcm-spy queues as many as the buffer of its socket
-/// holds. On a busy machine both programs lose the messages beyond that. This driver makes the run
-/// wait, so the run sends fewer messages at a time.
+/// holds. On a busy machine both programs lose the messages for which their queues have no room.
+/// This driver makes the run wait, so the run sends fewer messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
@@ -209,8 +209,8 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   EXPECT_EQ(logs[1]["digest"], logs[0]["digest"]);
   EXPECT_EQ(logs[1]["metrics"], logs[0]["metrics"]);
   EXPECT_EQ(logs[0]["digest"], nlohmann::json::parse(run.Out())["digest"]);
-  // AND lcm-spy shows every channel with its type. RESEND, DRIVER_INPUT and TRIAL may be missing,
-  // if no message came on them.
+  // AND lcm-spy shows every channel with its type. RESEND, DRIVER_INPUT and TRIAL are missing if no
+  // process has sent a message on them.
   const auto rows = spy.Rows();
   const std::vector<std::string> types = TypeNames();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
@@ -256,7 +256,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
   bool ended = false;
   bus.Subscribe("END", [&ended](runtime::Bytes) { ended = true; });
-  // WHEN lcm-logplayer plays the log at 25 times its speed (the event times span 50 s)
+  // WHEN lcm-logplayer plays the log 25 times as fast as the event times say (they span 50 s)
   Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
   ASSERT_EQ(player.Wait(), 0) << player.Err();
   ASSERT_TRUE(Mark(bus, "END", [&] {

@@ -151,7 +151,7 @@ TEST(LogplayerTest, StartsLcmsOwnOnTheNetworkWithTheLog) {
   EXPECT_EQ(player.out, "-Djava.net.preferIPv4Stack=true -cp " + parts.File("jars/lcm.jar") +
                             " lcm.logging.LogPlayer --lcm-url=udpm://239.255.76.67:7700?ttl=0 "
                             "--paused tests/integration/logs/kept/0.1.0.lcm\n");
-  // AND without --lcm-url it uses LCM_DEFAULT_URL
+  // AND without --lcm-url the verb uses LCM_DEFAULT_URL
   command.resize(command.size() - 2);
   command.insert(command.begin() + 1, "LCM_DEFAULT_URL=udpm://239.255.76.67:7701?ttl=0");
   EXPECT_THAT(RunCommand(command).out,
@@ -173,7 +173,8 @@ TEST(LogplayerTest, RefusesWhatItCannotPlay) {
               HasSubstr("error: --lcm-url file://x: no LCM URL such as"));
 }
 
-/// Tests in which LCM_DEFAULT_URL gives an address of this test to programs that get no URL.
+/// In these tests LCM_DEFAULT_URL is an address that only the test uses. Programs that get no URL
+/// use this address.
 class SpyAtMeetingTest : public testing::Test {
  protected:
   SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }

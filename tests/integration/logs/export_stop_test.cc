@@ -45,7 +45,7 @@ class HaltedExport {
   bool WaitUntilItWaits() const {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     // The test asks the kernel again and again how full the pipe is, because the kernel reports no
-    // event when a pipe is full. Reading would empty the pipe.
+    // event when a pipe is full. The test does not read the pipe, because that would empty it.
     for (int bytes = 0; bytes < 4096; std::this_thread::sleep_for(kLookEvery)) {
       if (ioctl(pipe_, FIONREAD, &bytes) != 0 || std::chrono::steady_clock::now() > end) {
         return false;
@@ -105,7 +105,7 @@ TEST_F(HaltedExportTest, LeavesNoFolderWithFilesOfTwoLogsWhenItIsKilled) {
   Run(other, "/steps=200");
   FilesByName older = Files();
   older.erase("ACC_COMMAND.csv");
-  // WHEN the export of this log is killed before all of its files are on the disk or in a pipe
+  // WHEN the export of this log is killed before it has written all of its files
   HaltedExport halted(other, out_, "ACC_COMMAND.csv");
   ASSERT_TRUE(halted.WaitUntilItWaits()) << halted.process().Err();
   halted.process().Signal(SIGKILL);

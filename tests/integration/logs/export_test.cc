@@ -234,8 +234,8 @@ TEST_F(ExportTest, FailsOnAFullDiskAndKeepsTheMatFileThatWasThere) {
   if (const Outcome own = RunCommand({"unshare", "--mount", "true"}); own.code != 0) {
     return MachineLacks("mount namespaces: " + own.err);
   }
-  // A file system of 64 KiB, which holds some channels of the log but not all. It is mounted only
-  // for these commands.
+  // A file system of 64 KiB has room for some channels of the log, but not for all. It is mounted
+  // only for these commands.
   const ScratchFolder folder;
   const Outcome outcome = RunCommand({"unshare", "--mount", "sh", "-c",
                                       "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
@@ -255,7 +255,7 @@ TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
   const std::string last = out_ + "/scenario.json";
   std::filesystem::remove(last);
   std::filesystem::create_directory(last);
-  // GIVEN another log, the first half of the exported log
+  // GIVEN another log, which is the first half of the exported log
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
   const Outcome outcome = Export({"--out", out_, "--force"});
   EXPECT_EQ(outcome.code, 2);

@@ -16,7 +16,7 @@
 
 namespace fogline::test {
 
-/// Copies of the log of a run without some messages.
+/// Makes copies of the log of a run. The copies lack some messages.
 class GapTest : public testing::Test {
  protected:
   /// @param setting of the run, such as "/seed=2"
@@ -26,7 +26,7 @@ class GapTest : public testing::Test {
     EXPECT_EQ(run.code, 0) << run.err;
   }
 
-  /// A copy of a log without its seal and without some messages.
+  /// A copy of whole_ without the seal, and without the messages for which `lost` returns true.
   std::string Without(const std::function<bool(std::string_view channel, std::int64_t step)>& lost,
                       const std::string& name = "gaps.lcm") const {
     const std::string copy = folder_.File(name);

@@ -1,5 +1,5 @@
-// Logs of runs in real time that lack published messages. Messages that were never published are
-// normal in such a run.
+// Runs in real time whose logs lack published messages. In real time a role may skip a step, so it
+// is normal that some messages were never published.
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -79,7 +79,7 @@ TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAr
   EXPECT_THAT(
       Fogline({"events", log}).out,
       ContainsRegex("unknown: the log may lack published messages of [A-Z_, ]*HOST_COMMAND"));
-  // The story at the top of a report leaves out the run.
+  // The story at the top of a report says nothing about a run with unknown measures.
   const std::string page = folder_.File("report.html");
   EXPECT_EQ(Fogline({"report", whole, "--output", page}).code, 0);
   EXPECT_THAT(Content(page), HasSubstr("the human drove for "));

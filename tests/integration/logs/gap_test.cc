@@ -274,7 +274,8 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
 }
 
 TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
-  // GIVEN a log without its first steps, in which RUN comes after some messages of its run
+  // GIVEN a log without the first steps of its run. In this log RUN comes after the messages of
+  // steps 196 to 198
   const std::string late = folder_.File("late.lcm");
   {
     log::EventLogReader reader(whole_);

@@ -75,7 +75,8 @@ TEST_F(LateLogTest, DoesNotKnowTheBeginningOfTheFogThatItBeginsIn) {
   expected["speed_at_fog_mps"] = nullptr;
   const nlohmann::json measured = Json({"metrics", log}, 1)[0]["take_overs"];
   ASSERT_EQ(measured.size(), 1U);
-  // The jerk of the first steps after the request is averaged over a second that the log lacks.
+  // The jerk of a step needs the acceleration 1 s earlier. For the first steps after the request
+  // the log lacks this acceleration.
   expected["max_abs_jerk_1s_mps3"] = nullptr;
   EXPECT_EQ(measured[0], expected);
 }
@@ -164,7 +165,7 @@ TEST_F(LateLogTest, ALogThatIsCutOffDoesNotKnowTheOutcomeOfItsRequest) {
 }
 
 TEST_F(LateLogTest, DoesNotKnowRequestsOutsideOfIt) {
-  // GIVEN a log that begins after the end of the request, and one that ends before its beginning
+  // GIVEN a log that begins after the end of the request, and a log that ends before the request
   const std::string after = From(static_cast<std::int64_t>(events_.back()["step"]) + 1);
   const std::string table = folder_.File("take-overs.csv");
   const auto expect_unknown = [&](const std::string& log, const std::string& what) {

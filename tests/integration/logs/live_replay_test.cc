@@ -160,8 +160,8 @@ TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
   const nlohmann::json live = Live({"--realtime", "--speed", "5"});
   EXPECT_EQ(live["steps"], 250);
   EXPECT_EQ(live["realtime"]["speed"], 5);
-  // If a message is late, the fusion computes a step differently. But both fusions get the same
-  // recorded sensors, so their tracks stay near each other.
+  // If a message is late, the fusion computes a step differently. But the fusions of the recorded
+  // run and of the replay get the same sensor values, so their tracks stay near each other.
   EXPECT_GT(live["track"]["compared_steps"], 200);
   EXPECT_LT(live["track"]["distance_m"]["rms"], 0.1);
 }
@@ -172,8 +172,8 @@ TEST_F(LiveReplayInRealtimeTest, RunsTheThreadsOfItsRolesBeforeOthersAndSaysSo) 
   if (!granted) return MachineLacks("the right to real-time priority");
   Background program({Program("fogline"), "replay", log_, "--live", "--realtime", "--speed", "2",
                       "--log", live_, "--json", "--quiet"});
-  // THEN four threads have this priority: one each for radar and LiDAR, and one each for the
-  // backlogs of their two buses
+  // THEN four threads have real-time priority: the threads of radar and LiDAR, and a thread for the
+  // backlog of each of their two buses
   constexpr int kThreads = 4;
   int threads = 0;
   while (threads < kThreads && IsAlive(program.pid())) {

@@ -1,4 +1,4 @@
-// The log of a run, changed in a test.
+// Helpers for tests that change the log of a run.
 #pragma once
 
 #include <fcntl.h>

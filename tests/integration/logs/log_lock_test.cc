@@ -128,7 +128,7 @@ TEST_F(LogLockTest, ARecorderThatIsStartedByHandTakesNoLogOfARunAndLocksItsOwn) 
     const Outcome refused = RunCommand(recorder);
     EXPECT_EQ(refused.code, 2);
     EXPECT_EQ(refused.err, "fogline-recorder: " + RefusalNaming(run.pid()));
-    // The run's own recorder may have written more.
+    // The run's own recorder may have written more, so the log may be longer than before.
     EXPECT_TRUE(TextOf(log_).starts_with(before)) << "the log of the run is as it was";
   }
   std::filesystem::remove(log_);
@@ -183,7 +183,8 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
     EXPECT_EQ(second.err, logs + ": error: --logs: is being written by another table (pid " +
                               std::to_string(first.pid()) + ")\n");
   }
-  // A run may not replace a log of the table, but it may write its own log into this folder.
+  // A run may not replace a log that `fogline table` writes, but it may write a log of its own into
+  // the same folder.
   const std::vector<std::string> run{
       Program("fogline"), "run",  "scenario/paper.json", "--transport", "direct",
       "--force",          "--log"};

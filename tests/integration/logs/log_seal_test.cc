@@ -46,7 +46,8 @@ TEST_F(SealedLogTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
   EXPECT_TRUE(json["verified"]["same"].is_null()) << "nothing was compared";
   EXPECT_EQ(json["verified"]["left_out"][0]["why"], "a run in real time");
   EXPECT_EQ(Digest({log_}, 0)["seal"], "holds");
-  // WHEN a STATUS is changed (the measures of real time come from STATUS)
+  // WHEN a STATUS is changed, THEN `fogline metrics` refuses the log. Some metrics of a run in real
+  // time come from STATUS
   const EventPlace status = FirstEventOf(log_, "STATUS");
   FlipLowestBit(log_, status.at + status.size - 1);
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log_});

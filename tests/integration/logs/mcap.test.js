@@ -1,5 +1,5 @@
-// MCAP's own library reads an exported log: every number of every channel equals that of the CSV
-// export.
+// MCAP's own library reads an exported log. Every number of every channel equals the number in the
+// CSV export.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
@@ -64,7 +64,7 @@ function decoderOf(schema) {
   return types.lookupType(schema.name);
 }
 
-/** The columns of a row of the CSV export: "header.step", "state.0". 64-bit integers are texts. */
+/** The values of a message by the columns of the CSV export, such as "header.step", "state.0". */
 function columnsOf(message, prefix = "") {
   const columns = {};
   for (const field of message.$type.fieldsArray) {
@@ -88,7 +88,8 @@ function readCsv(name) {
 }
 
 /**
- * Whether a value and a text have the same bits. A boolean is 0 or 1; a 64-bit integer is a Long.
+ * Whether a value has the same bits as the number in a text. In the text a boolean is 0 or 1. A
+ * 64-bit integer is a value of class Long.
  */
 function isSame(value, text) {
   if (protobuf.util.Long.isLong(value)) return value.toString() === text;

@@ -1,4 +1,5 @@
-// `fogline export --mcap` on the command line. mcap.test.js compares the numbers.
+// `fogline export --mcap` on the command line. mcap.test.js compares the numbers in an MCAP file
+// with those of the CSV export.
 #include <filesystem>
 #include <fstream>
 #include <string>

@@ -21,8 +21,8 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Settings that switch on all features with which roles read inputs on demand, have a memory, or
-// draw random numbers.
+// Settings that switch on all features with which a role reads an additional input, has a memory,
+// or draws random numbers.
 const Words kEverything{"--set", "/human/loses_awareness=true",
                         "--set", "/human/misjudges=true",
                         "--set", "/human/sight=fog",
@@ -95,8 +95,8 @@ TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
 }
 
 TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
-  // With policy `bayes` the arbitrator reads TRUTH on demand. With policy `oracle` the fusion reads
-  // TRUTH on demand. The driver reads HOST_COMMAND on demand.
+  // With policy `bayes` the arbitrator also reads TRUTH. With policy `oracle` the fusion also reads
+  // TRUTH. In both runs the driver also reads HOST_COMMAND.
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;

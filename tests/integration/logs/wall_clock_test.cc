@@ -146,7 +146,7 @@ TEST_F(WallClockInRealtimeTest, IsAlwaysInTheLogAndRunsAtTheSpeedOfTheRun) {
   const double simulated_s = static_cast<double>(last.header.utime - first.header.utime) / 1e6;
   for (const double wall_s : {static_cast<double>(last.unix_us - first.unix_us) / 1e6,
                               static_cast<double>(last.monotonic_us - first.monotonic_us) / 1e6}) {
-    EXPECT_NEAR(wall_s, simulated_s / 5, 1.0);  // a busy machine may hold up the first or last step
+    EXPECT_NEAR(wall_s, simulated_s / 5, 1.0);  // a busy machine may delay the first or last step
   }
 }
 

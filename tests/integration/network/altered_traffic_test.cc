@@ -19,8 +19,8 @@ using testing::HasSubstr;
 using Words = std::vector<std::string>;
 using Payload = std::vector<std::uint8_t>;
 
-/// A bridge between a run and one of its roles, which is on another network. It carries their
-/// messages, and alters one message.
+/// A bridge between a run and one of its roles, which is on another network. The bridge carries
+/// messages in both directions, and alters one message.
 class Bridge {
  public:
   Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
@@ -43,8 +43,8 @@ class Bridge {
   void Carry(runtime::Bus& from, runtime::Bus& to, const std::string& channel) {
     const bool of_lidar = &from == &role_;
     from.Subscribe(channel, [this, &to, channel, of_lidar](runtime::Bytes bytes) {
-      // Requests cross the bridge in both directions. Each bus also receives what the bridge itself
-      // publishes there, and this must not cross again.
+      // RESEND crosses the bridge in both directions. Each bus also receives the RESEND that the
+      // bridge itself publishes there. The bridge must not carry this message back.
       resend_t resend{};
       if (channel == ChannelOf<resend_t>().name && runtime::Decode(bytes, resend) &&
           (resend.requester == NameOf(Role::kLidar)) != of_lidar) {

@@ -236,8 +236,8 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
     drivers.emplace_back(meeting.Command("fogline-driver", {}));
     ASSERT_TRUE(drivers.back().WaitForErr("waiting for a run", kPatience));
   }
-  // The run takes 25 s. A driver needs up to 5 s, and more on a busy machine, to notice that
-  // another driver has the role.
+  // A driver needs up to 5 s, and more on a busy machine, to notice that another driver has the
+  // role. The run must not end before that, so it takes 25 s.
   Background run(meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace",
                               "2", "--stall-timeout", "30"}));
   ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
@@ -248,7 +248,8 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
            said.find(" again\n") != std::string::npos;
   };
   const TimePoint end = Clock::now() + kPatience;
-  // No event shows that a program has written to its stderr, which is a file.
+  // No event tells the test that a driver has written to its stderr, which is a file. So the test
+  // reads the file again and again.
   while (std::ranges::none_of(drivers, is_other) && Clock::now() < end) {
     std::this_thread::sleep_for(kLookEvery);
   }

@@ -1,5 +1,5 @@
-// Tests in which processes or a machine of a run are unreachable for longer than other processes
-// wait by default.
+// Tests in which processes or a machine of a run are unreachable for longer than the default stall
+// timeout of 4 s.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@
 namespace fogline::test {
 
 inline constexpr const char* kAwayUrl = "udpm://239.255.76.67:7700?ttl=1";
-// The duration of an absence, which is longer than a role waits for its runner.
+// The duration of an absence: 17 s. By default a role waits for a silent runner for 19 s: for the
+// stall timeout and then for kGone. So the absence ends before a role leaves the run.
 inline constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
 
 /// A run with its driver on another machine.

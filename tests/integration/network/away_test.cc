@@ -1,5 +1,5 @@
-// All processes of a run are stopped for longer than each process waits for another one by default.
-// Ctrl-Z stops a run in this way, and so does the freezing of its container.
+// All processes of a run are stopped for longer than the default stall timeout. Ctrl-Z stops a run
+// in this way, and the freezing of a container stops the runs in it.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -156,7 +156,8 @@ std::string LinesOfLogger() {
 }
 
 TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
-  // GIVEN these lines, with a port that no other test has, and a run of three seconds
+  // GIVEN the lines of docs/network.md, with a port that no other test has, and a run of three
+  // seconds
   std::string lines = LinesOfLogger();
   const std::string port = "udpm://239.255.76.67:7700?ttl=0";
   ASSERT_THAT(lines, HasSubstr(port));

@@ -121,8 +121,9 @@ class Group {
   std::array<std::uint8_t, kMaxDatagram> heard_{};
 };
 
-/// Makes one number of a genuine message of type M infinite or NaN. @return false if `genuine` is
-/// of another type or has no numbers
+/// Replaces one number of a genuine message of type M by `value`, which is infinite or NaN. Adds
+/// `later` to the step of the message. @return false if `genuine` is of another type or has no
+/// numbers
 template <class M>
 bool Poison(runtime::Bytes genuine, double value, std::uint64_t which, std::int64_t later,
             Buffer& payload) {
@@ -158,8 +159,8 @@ class Attacker {
     if (payload.size() < runtime::kHeaderEnd) return;
     const std::string_view channel = text.substr(kWholeHeader, end - kWholeHeader);
     const auto is_channel = [channel](const auto& one) { return one.name == channel; };
-    // Only messages of a run's channels become templates, because a false announcement of a run
-    // would be a valid message.
+    // Only messages on the channels of a run become templates. A changed announcement of a run
+    // could still be a valid message, and this program must not send valid messages.
     if (std::ranges::none_of(kChannels, is_channel)) return;
     genuine_[std::string(channel)] = {payload.begin(), payload.end()};
   }
@@ -191,7 +192,7 @@ class Attacker {
  private:
   struct Kind {
     std::string_view name;
-    bool needs_genuine;  // needs a genuine message of the channel in payload_
+    bool needs_genuine;  // make() needs a genuine message in payload_
     void (Attacker::*make)();
   };
   static const std::vector<Kind> kKinds;
@@ -227,7 +228,7 @@ class Attacker {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double value =
         OneOf(std::array{kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()});
-    // The message is of the current step or of the next one.
+    // The message is of the current step or of the next step.
     const auto later = static_cast<std::int64_t>(Below(2));
     const Buffer genuine = payload_;
     const std::uint64_t which = random_();
@@ -243,7 +244,7 @@ class Attacker {
   }
   void WrongStep() {
     // In STATUS the step is the sender's newest step, and in RESEND it is the requested step. So no
-    // step is wrong in these two channels.
+    // step is wrong in these two channels. Then the datagram is noise: it has random bytes.
     if (channel_ == ChannelOf<status_t>().name || channel_ == ChannelOf<resend_t>().name) {
       return Noise();
     }

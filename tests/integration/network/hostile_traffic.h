@@ -40,8 +40,8 @@ class HostileTrafficTest : public NetworkTest {
     machine.RouteMulticastToItself();
     more.insert(more.begin(), {Program("hostile_traffic"), "--port", "7700", "--rate",
                                std::to_string(hostility.rate_hz), "--seconds", "600"});
-    // A real attacker has a machine of its own. On a busy machine the hostile program leaves the
-    // processor to the run.
+    // A real attacker has a machine of its own, and takes no processor time from the run. So on a
+    // busy machine, the hostile program gets a lower priority than the run.
     if (!hostility.alone) more.insert(more.begin(), {"nice", "-n", "10"});
     Background hostile(machine.On(more));
     Background run(machine.On(Run({"--lcm-url", "udpm://239.255.76.67:7700?ttl=0", "--pace",
@@ -96,7 +96,7 @@ class HostileTrafficTest : public NetworkTest {
     for (const std::string& kind : refused) {
       EXPECT_GT(result["refused"][kind], hostility.least_of_a_kind) << result["refused"];
     }
-    // AND the run names some of the senders that pretended to be of other runs
+    // AND the run names some of the senders that pretended to belong to other runs
     EXPECT_FALSE(result["strangers"].empty());
   }
 

@@ -1,4 +1,5 @@
-// The meeting address of the programs of a test that get no URL on their command line.
+// The meeting address of a test: the programs of the test that get no URL on their command line
+// meet there.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ class Meeting {
  public:
   const std::string& url() const { return url_; }
 
-  /// The command line of a program at this address.
+  /// The command line of a program that gets the address from LCM_DEFAULT_URL.
   std::vector<std::string> Command(const std::string& program,
                                    const std::vector<std::string>& arguments) const {
     std::vector<std::string> command{"env", "LCM_DEFAULT_URL=" + url_, Program(program)};

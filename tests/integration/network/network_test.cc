@@ -85,7 +85,7 @@ TEST_F(ThreeMachinesTest, RunTheSameWhenTheLinksDelayRepeatAndReorder) {
     const Outcome netem =
         RunCommand(machine.On({"tc", "qdisc", "add", "dev", "eth0", "root", "netem", "delay", "5ms",
                                "3ms", "reorder", "20%", "duplicate", "10%"}));
-    // netem is a kernel module that some otherwise suitable kernels lack.
+    // Some kernels lack the module netem, although they can do everything that NetworkTest needs.
     if (netem.code != 0) GTEST_SKIP() << "the kernel has no netem: " << netem.err;
   }
   const auto run = RunOn(lab, {"--set", "/steps=80"});
@@ -101,8 +101,8 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   // GIVEN a run that takes 10 s
   Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "1.5"})));
   ASSERT_TRUE(paced.WaitForErr("processes: "));
-  // WHEN another run takes place at the same time. It differs from the first run from the first
-  // step on
+  // WHEN another run takes place at the same time. Its seed makes the messages of the two runs
+  // differ from the first step on, so a message of the wrong run would change a digest
   const auto other =
       Result(RunCommand(lab[GetParam()].On(Run({"--lcm-url", kUrl, "--seed", "7"}))));
   // THEN each run has the same result as when it runs alone
@@ -207,8 +207,8 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
     return std::ranges::count_if(drivers,
                                  [](const Background& one) { return !IsAlive(one.pid()); });
   };
-  // The runner does not wait until its driver has ended, so the test waits for this. Even on a busy
-  // machine the driver ends within kPatience.
+  // The runner does not wait until its driver has ended, so the test waits for the end of the
+  // driver. Even on a busy machine the driver ends within kPatience.
   const TimePoint end = Clock::now() + kPatience;
   while (ended() == 0 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   EXPECT_EQ(ended(), 1);

@@ -47,7 +47,7 @@ class OutageTest : public NetworkTest {
     more.insert(more.end(), {"--pace", "10"});
     return Run(more);
   }
-  /// Waits until the log of the run has grown by some fifty steps.
+  /// Waits until the log of the run has grown by about fifty steps.
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
@@ -91,8 +91,9 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   // WHEN a part of the network fails on the driver's machine and comes back
   lab[1].Do(GetParam().begin);
-  // The run waits for the driver. No event shows this test that a message of the driver was lost.
-  // The driver sends a message every 200 ms, or later on a busy machine.
+  // The run now waits for the driver. The driver tries to send a STATUS every 200 ms, or later on a
+  // busy machine. No event shows this test that a message was lost. So the test waits 4 s, which is
+  // enough for several messages.
   std::this_thread::sleep_for(milliseconds(4000));
   lab[1].Do(GetParam().end);
   // THEN the result is that of an undisturbed run
@@ -151,7 +152,8 @@ TEST_F(OutageTest, ARoleThatWaitsForTheNetworkSaysSoAndCanBeInterrupted) {
 }
 
 TEST_F(OutageTest, AFirewallThatDropsOneOfAThousandEndsNoRun) {
-  // GIVEN a machine on which a run may choose any transport
+  // GIVEN a machine with a route for multicast, so that a run may choose any transport. A firewall
+  // drops one of a thousand outgoing UDP datagrams
   const Machine machine("firewall");
   machine.RouteMulticastToItself();
   machine.Do(
@@ -243,7 +245,8 @@ TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   Background run(
       machine.On(PacedRun({"--lcm-url", kUrl, "--external", "driver", "--restarts", "0"})));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN the driver receives nothing from its runner for so long that it looks for another run
+  // WHEN the driver receives nothing from its runner for so long that the driver looks for another
+  // run
   machine.Do("ip addr flush dev eth0");
   LastFor(runtime::RunnerWatch::kSilent + milliseconds(1000));
   machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
@@ -261,8 +264,9 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
   const auto has_group = [&machine](const std::string& interface) {
     return runtime::HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
   };
-  // The driver joins the group of kUrl. The driver also announces at the meeting address that it
-  // waits, and the meeting address has the same group.
+  // The driver joins the group of kUrl. The driver also sends to the meeting address, which has the
+  // same group. The socket that only sends must not join the group, because it would stay in the
+  // group on eth0.
   const Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
   const TimePoint end = Clock::now() + kPatience;
   while (!has_group("eth0") && Clock::now() < end) LastFor(milliseconds(50));
@@ -299,7 +303,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
       machine.On({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url, stock}));
   // lcm-logger listens when this socket exists. The kernel prints the port 7700 as 1E14.
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
-  // WHEN a run takes place on loopback and the interface goes down during it
+  // WHEN a run takes place on loopback and the interface goes down during the run
   Background run(machine.On(Run({"--lcm-url", url, "--pace", "5"})));
   ASSERT_TRUE(GrowsTo(100'000, Log()));
   machine.Do("ip link set eth0 down");
@@ -307,7 +311,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   machine.Do("ip link set eth0 up; ip route add default via 192.0.2.2");
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   // lcm-logger writes messages later than they are sent. When it ends, it drops messages that it
-  // has not written.
+  // has not written. So the test waits until the log has one of the last 100 steps.
   const TimePoint end = Clock::now() + kPatience;
   while (LastStepIn(stock) < 400 && Clock::now() < end) {
     LastFor(milliseconds(50));

@@ -20,7 +20,7 @@ namespace {
 
 using watch::SenderView;
 
-/// The view of the sender on this channel; an empty one if there is none.
+/// The view of the sender on this channel; an empty view if no sender uses the channel.
 SenderView SenderOn(const watch::Senders& senders, const std::string& channel) {
   for (const SenderView& sender : senders.View(Clock::now()).senders) {
     if (std::ranges::find(sender.channels, channel) != sender.channels.end()) return sender;
@@ -119,7 +119,8 @@ TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
     const auto counts = SenderOn(senders_, "FLOOD").counts;
     return counts.received + counts.lost + counts.missed_here == number;
   }));
-  // THEN the missing messages count as missed by the tap, except those that the kernel dropped
+  // THEN the messages for which the tap's buffer had no room count as missed by the tap. Only
+  // messages that the kernel dropped before they reached a socket count as lost
   const auto counts = SenderOn(senders_, "FLOOD").counts;
   EXPECT_EQ(counts.missed_here, senders_.View(Clock::now()).own_overflow);
   EXPECT_LE(counts.lost, DroppedByKernel() - dropped_before);

@@ -69,7 +69,7 @@ class RawSocket {
     }
     return sent;
   }
-  /// Reads this number of bytes. @return false if the other side closes the connection before
+  /// Reads this number of bytes. @return false if the other side closes the connection earlier
   bool Read(std::size_t count) const {
     Payload bytes(1 << 16);
     while (count > 0) {
@@ -222,8 +222,8 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
   // GIVEN a client that subscribes with a regular expression. The search for this expression is
-  // slow in some channel names. The expression is long, so the relay allows a long search. Another
-  // client subscribes to everything
+  // slow in some channel names. The relay's library, Boost, limits the steps of a search. But this
+  // limit is high here, because the expression is long. Another client subscribes to everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   runtime::Bus bus(relay.url());

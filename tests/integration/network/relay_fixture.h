@@ -42,7 +42,7 @@ class Relay {
   std::string url_;
 };
 
-/// Publishes a message, and waits until this bus receives it. The relay has then also passed all
+/// Publishes a message, and waits until this bus receives it. The relay has then also forwarded all
 /// earlier messages of this bus. @return false after kPatience
 [[nodiscard]] inline bool RoundTrip(runtime::Bus& bus) {
   static int trips = 0;

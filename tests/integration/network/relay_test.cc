@@ -98,8 +98,8 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
-  // AND after this client has unsubscribed, only our bus receives the client's message (no other
-  // message is in transit)
+  // AND after this client has unsubscribed, only our bus receives the client's message. Before the
+  // client unsubscribes, it receives all messages that are still in transit
   std::size_t heard = 0;
   bus.Subscribe("LAST", [&heard](runtime::Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
@@ -115,7 +115,8 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
 }
 
 TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
-  // GIVEN a relay whose queue, together with both sockets, has less room than the burst needs
+  // GIVEN a relay whose queue has less room than the burst needs, even together with the buffers of
+  // the sockets of relay and bus
   Relay relay({"--max-queue", "4", "--quiet"});
   runtime::Bus bus(relay.url());
   int heard = 0;
@@ -215,7 +216,7 @@ TEST(RelayTest, IsFoundAgainWhereItWasByItsSubscribers) {
   EXPECT_TRUE(other.failed_sends().since);
   // WHEN another relay listens on the same port
   Background next({Program("fogline-relay"), "--listen", url.substr(7)});
-  // THEN messages pass as before
+  // THEN the relay carries messages again
   heard = 0;
   while (heard == 0 && Clock::now() < end) {
     other.Publish("A", Payload(1));

@@ -79,7 +79,7 @@ class Intruder {
   int count_ = 0;
 };
 
-/// A message with other contents and a later step, for which the receivers still wait.
+/// The message with other contents and a later step. The receivers still wait for this step.
 Payload Forged(Payload payload) {
   constexpr std::uint8_t kStepsAhead = 3;
   payload[runtime::kStepOffset + 7] =
@@ -176,7 +176,7 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   const auto replay = [&] {
     for (const Payload& message : announcements) intruder.Say("RUN", message);
   };
-  // WHEN these messages are replayed for a second to a driver that waits for a run
+  // WHEN the RUN messages of the earlier run are replayed for 1 s to a driver that waits for a run
   Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
   for (int i = 0; i < 50; ++i) {
     replay();
@@ -241,7 +241,7 @@ TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
   EXPECT_TRUE(
       other.WaitForErr("with a wrong signature were refused: do all processes have the "
                        "same key?"));
-  // AND the runner also reports the drivers, while it waits and at its end
+  // AND the runner reports the messages with a wrong signature, while it waits and at its end
   EXPECT_TRUE(run.WaitForErr("with a wrong signature were refused"));
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 130);

@@ -13,8 +13,9 @@ namespace {
 
 using testing::HasSubstr;
 
-// Prints "joined" after the first message. After the message of the last step, it prints the number
-// of the received steps of TRUTH, the first step and the last step.
+// This script prints "joined" after the first message. After the message of the last step, the
+// script prints the number of the received steps of TRUTH, the first step, the last step, and the
+// counts of refused messages.
 constexpr const char* kListener = R"(
 import fogline_lab as fl
 
@@ -44,7 +45,7 @@ class LiveTest : public testing::Test {
     listener.insert(listener.begin() + 1, "LCM_DEFAULT_URL=" + meeting_.url());
     Background live(listener);
     ASSERT_TRUE(live.WaitForOut("listening")) << live.Err();
-    // The run is slow, so a busy machine loses no message that the listener has not read yet.
+    // The run is slow, so no message is lost even if a busy machine delays the listener.
     std::vector<std::string> more{"--external", "driver", "--pace", "1", "--set", "/steps=40"};
     more.insert(more.end(), of_run.begin(), of_run.end());
     Background run(meeting_.Run(more));

@@ -10,7 +10,7 @@
 
 namespace fogline::test {
 
-/// Whether the package can run a role. Only a package with its extension module can.
+/// Whether the package can run a role. For this the package needs its extension module.
 inline bool PythonRunsRoles() {
   const auto package = std::filesystem::path(FOGLINE_BINARY_DIR) / "python/fogline_lab";
   if (!std::filesystem::exists(package)) return false;

@@ -29,7 +29,7 @@ std::string BlockWith(const std::string& text, const std::string& page) {
   return page.substr(begin, page.find("```", begin) - begin);
 }
 
-// A role in Python that answers each step with the message of this step in a log. It fails if an
+// A role in Python. In each step it sends the message that a log has for this step. It fails if an
 // input differs from the input in the log.
 constexpr const char* kReplayed = R"(
 import sys

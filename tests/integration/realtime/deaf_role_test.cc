@@ -53,7 +53,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
                              ") has heard no TRUTH for "))
       << run.Err();
   machine.LoseNothing();
-  // THEN the run starts again a role that reads TRUTH, and this role computes until the end
+  // THEN the run restarts a role that reads TRUTH, and this role computes until the end
   EXPECT_EQ(run.Wait(), kFailed);
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();
@@ -66,15 +66,15 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   }
   EXPECT_TRUE(radar) << result["restarts"];
   EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kDeafRunRate_hz - 5);
-  // AND the run fails, because the log lacks about two seconds
+  // AND the run fails, because the log lacks the messages of about two seconds
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));
 }
 
 TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  // The ACC counts as deaf after some 3 s. On a busy machine this may take some seconds more, so
-  // the run lasts 10 s.
+  // The ACC counts as deaf after about 3 s, or some seconds later on a busy machine. So the run
+  // lasts 10 s.
   Background run(machine.On(RealtimeRun(10, {"--restarts", "0"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
@@ -89,8 +89,8 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
 TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  // The driver counts as deaf after some 3 s, and then receives TRUTH again. On a busy machine each
-  // of these two changes may take three seconds more.
+  // The driver counts as deaf after about 3 s, and then receives TRUTH again. On a busy machine
+  // each of these two changes may take three seconds more.
   constexpr int kSeconds = 12;
   Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));

@@ -1,4 +1,4 @@
-// A few bursts of loss, each of a different kind.
+// A few bursts in which the network loses messages. Each burst is of a different kind.
 #include <gtest/gtest.h>
 
 #include "tests/integration/realtime/loss_bursts.h"

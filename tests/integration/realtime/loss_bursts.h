@@ -1,6 +1,6 @@
-// Real time on networks that lose many messages for a while. When the network loses no more
-// messages, every role computes again, no matter which messages were lost. A run that succeeds has
-// a complete log.
+// Runs in real time on networks that lose many messages for a while. When the network loses no more
+// messages, every role must be in time again, no matter which messages were lost. If a run
+// succeeds, its log must be complete.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,10 +39,10 @@ struct BurstPlan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// The time from the end of a burst until a role was in time again; no value if it was not. A role
-/// is in time if it publishes a step within a period after the world began the step. The world is
-/// in time if it begins a step within two periods after the step before. The recorder is in time if
-/// it has written a step that began after the burst.
+/// The time from the end of a burst until a role was in time again; no value if the role was never
+/// in time again. A role is in time if it publishes a step within a period after the world began
+/// the step. The world is in time if it begins a step within two periods after the previous step.
+/// The recorder is in time if it has written a step that began after the burst.
 struct BackAfterBurst {
   Role role;
   std::optional<double> after_s;
@@ -192,8 +192,8 @@ class BurstRun {
   // processors.
   static constexpr double kCommands_s = 3;
 
-  /// The command line of the run. The run continues after a collision, because the cars can hit
-  /// each other when each car stops by itself.
+  /// The command line of the run. In a burst of loss each car may stop by itself, and the cars may
+  /// hit each other. So the run continues after a collision.
   std::vector<std::string> Command() const {
     double run_s = 2 * kRest_s;
     for (const Burst& burst : plan_.bursts) run_s += burst.length_s + plan_.clean_s + kCommands_s;
@@ -304,8 +304,8 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
-      // A burst must not make the runner start a role again. No role hangs, and no role is deaf for
-      // long.
+      // A burst makes no role hang, and no role deaf for long. So the runner must not start a role
+      // again.
       EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {

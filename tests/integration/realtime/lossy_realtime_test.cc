@@ -112,9 +112,9 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
   }
   // Every role and the recorder receive and send until the end. So each channel must have a message
   // near the end: in the last 50 steps, or in the last 150 steps for ACC_COMMAND. An ACC_COMMAND
-  // comes only if six messages of its step arrive, one after another, so the log has about one in
-  // eight. In one of a thousand runs the log has none of the last 50 steps, and in one of a hundred
-  // million runs it has none of the last 150 steps.
+  // comes only if six messages of its step arrive, one after another. So the log has an ACC_COMMAND
+  // for about one step in eight. In one of a thousand runs the log has no ACC_COMMAND for the last
+  // 50 steps. In one of a hundred million runs it has none for the last 150 steps.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;

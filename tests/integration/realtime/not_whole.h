@@ -4,7 +4,7 @@
 namespace fogline::test {
 
 /// Exit code of `fogline run` for a run that failed. On a network that loses messages a run may
-/// fail only because the recorder cannot get all messages again.
+/// fail for one reason only: the recorder cannot get all lost messages.
 inline constexpr int kFailed = 3;
 inline constexpr const char* kNotWhole =
     "fogline run: error: the log is not complete: it lacks at least ";

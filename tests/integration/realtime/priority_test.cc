@@ -63,7 +63,7 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   const json priority = json::parse(run.out)["realtime"]["priority"];
   EXPECT_EQ(priority["refused"].size(), kRoles.size());
   EXPECT_TRUE(priority["granted"].empty());
-  // AND the log shows it later, too
+  // AND the verbs that read the log later report the same
   const std::string log = folder.File("run.lcm");
   const json metrics = json::parse(RunCommand({Program("fogline"), "metrics", log, "--json"}).out);
   EXPECT_EQ(metrics[0]["realtime"]["priority"], priority);
@@ -71,7 +71,7 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   EXPECT_EQ(events[0]["priority"], priority);
   EXPECT_THAT(RunCommand({Program("fogline"), "events", log}).out,
               HasSubstr("  without real-time priority: world, radar, "));
-  // AND doctor reports it, with a recipe
+  // AND doctor reports the missing priority, with a recipe
   std::vector<std::string> examine = WithoutPriority();
   examine.insert(examine.end(), {Program("fogline"), "doctor", "--json"});
   const json document = json::parse(RunCommand(examine).out);

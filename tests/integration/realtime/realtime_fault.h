@@ -67,24 +67,24 @@ struct FaultPlan {
 inline FaultPlan PlanOf(const Fault& fault) {
   FaultPlan plan;
   if (fault.role == "arbitrator" || fault.role == "follower") {
-    // On a busy machine the fault may come up to 2 s (100 steps) late.
+    // On a busy machine the fault may be up to 2 s (100 steps) late.
     plan.steps = plan.fault_step + 100 + kManoeuvre;
   } else if (fault.role == "driver") {
-    // The human is needed some 20 steps after the fault, while the driver is still missing: a
-    // stopped process is missing for 50 steps. In scenario paper this time is 13 steps after the
-    // beginning of the fog, and in dense_fog 120 steps after it.
+    // The human is needed about 20 steps after the fault. The driver is then still missing, because
+    // a stopped process is missing for 50 steps. Scenario paper needs the human 13 steps after the
+    // beginning of the fog, and dense_fog 120 steps after it.
     const bool dense = fault.scenario == "dense_fog";
     plan.fault_step = dense ? 100 : 60;
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
-    // The recorder counts as hung after one second without a message from it. At this speed a
-    // second has 20 steps. The other roles keep the messages of more than 20 steps for the
-    // recorder.
+    // The recorder counts as hung if it sends no message for 1 s. At this speed 1 s has 20 steps.
+    // The other roles keep the messages of more than 20 steps. So the next process of the recorder
+    // can ask for all messages that it lacks.
     plan.speed = 2;
   } else if (fault.role != "world") {
-    // The automation must drive again at the end, even if a busy machine starts the new process
-    // late.
+    // The automation must drive again at the end. So the fog would begin after the end of the run,
+    // and the run is long enough for a busy machine that starts the new process late.
     plan.settings = {"/fog/start_s=60"};
     plan.steps = 240;
   }
@@ -104,7 +104,7 @@ inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
       [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
 }
 
-// Expects that the host follows its commands as before, and that the following car stops.
+// Expects that the host still follows its commands, and that the following car stops.
 inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ExpectFollowerObeys(log, 1, lost);
@@ -173,8 +173,8 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   JudgeWithoutAutomation(log, silence, loss->step);
 }
 
-/// Whether a role missed messages of another role than the one that failed. This happens if a busy
-/// machine executes a process too late. The run then does not show the effect of the fault.
+/// Whether a role missed messages of a role that did not fail. This happens if a busy machine
+/// executes a process too late. The run then does not show the effect of the fault.
 inline bool IsDisturbed(const nlohmann::json& realtime, const std::string& failed) {
   return std::ranges::any_of(realtime["fallbacks"], [&](const nlohmann::json& fallback) {
     return fallback["culprit"].is_string() && fallback["culprit"] != failed &&
@@ -213,8 +213,8 @@ inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
       continue;
     }
     if (fault.role == "world") {
-      // The steps do not show for how long the world sent nothing. A role may notice the loss one
-      // period later.
+      // The steps do not show for how long the world sent nothing. So the test measures this time.
+      // A role may notice the loss one period later than kDetection.
       EXPECT_TRUE(run.missed || fault.signal == SIGKILL) << "no role missed it";
       if (run.missed) {
         EXPECT_LE(std::chrono::duration<double>(*run.missed).count(), (kDetection + 1) * kPeriodS);

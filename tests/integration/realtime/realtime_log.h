@@ -71,8 +71,8 @@ struct Log {
     return misses;
   }
 
-  /// What the first STATUS that reports a lost channel says. The search begins at a given step, and
-  /// leaves out the STATUS of the recorder.
+  /// The loss of a channel, from the first STATUS that reports this loss. FirstLossOf() searches
+  /// from the step `from` on, and skips the STATUS of the recorder.
   struct Loss {
     std::int64_t step;  // the current step of the run
     std::string reporter;
@@ -144,7 +144,7 @@ inline Car Follower(const truth_t& truth) {
 }
 
 /// Checks that a process applies, in each step, the value in the message of this step. If the
-/// message is missing or late, the process must keep the value of the step before. The log shows
+/// message is missing or late, the process must keep the value of the previous step. The log shows
 /// which messages exist. The process reports how many messages were late.
 class Obedience {
  public:
@@ -198,7 +198,8 @@ inline void ExpectFollowerObeys(const Log& log, std::int64_t from, std::int64_t 
   }
 }
 
-/// Expects that a car brakes to standstill within the limits from `step` on, and stays there.
+/// Expects that a car brakes to standstill from `step` on, and stays there. The limits of its
+/// deceleration and jerk are kDecelerationMps2 and kJerkMps3.
 inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
                                          Car (*car)(const truth_t&)) {
   EXPECT_EQ(car(log.truth.at(log.last())).speed_mps, 0) << "does not stand at the end";

@@ -60,9 +60,10 @@ class RealtimeRun {
     const std::string folder = "/proc/" + std::to_string(pids_.at(role)) + "/task";
     return std::distance(std::filesystem::directory_iterator(folder), {});
   }
-  /// Waits for the first STATUS that calls the world lost. @return the age of the world's last
-  /// message in this STATUS, as its sender measured it, without the sender's own pauses; nullopt if
-  /// the world comes back before such a STATUS
+  /// Waits up to 5 s for the first STATUS that reports the world as lost. @return the age of the
+  /// world's last message, as this STATUS reports it. This age does not include pauses of the
+  /// sender of the STATUS. The result is nullopt if the world comes back before such a STATUS, or
+  /// if no such STATUS comes
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);

@@ -43,9 +43,9 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
-  // If the machine executes no process for half a period, the run is disturbed and proves nothing.
-  // So the test tries several runs. A period is 50 ms here, and most such pauses of a machine are
-  // shorter than 25 ms.
+  // If the machine executes no process for half a period, a step may lack an input. Then the run
+  // proves nothing. So the test tries several runs. A period is 50 ms here, and most pauses of a
+  // machine are shorter than 25 ms.
   constexpr int kTries = 5;
   constexpr double kSlowly = 2;
   for (int i = 0; i < kTries; ++i) {

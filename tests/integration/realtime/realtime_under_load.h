@@ -38,7 +38,7 @@ class Load {
   std::list<Background> busy_;
 };
 
-/// The resident memory of every role during a run, by role, from its STATUS.
+/// The resident memory of every role during a run, by role, from the STATUS of the role.
 inline std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::string& log) {
   std::map<std::string, std::vector<std::int64_t>> memory;
   log::EventLogReader reader(log);
@@ -51,7 +51,8 @@ inline std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::stri
   return memory;
 }
 
-/// Milliseconds of processor time that the hypervisor has taken from this machine since its start.
+/// Milliseconds of processor time that the hypervisor has taken from this machine since the machine
+/// started.
 inline std::int64_t StolenMs() {
   std::ifstream stat("/proc/stat");
   std::string cpu;

@@ -1,4 +1,4 @@
-// `fogline record` writes all messages of a network, whichever LCM programs send them.
+// `fogline record` writes all messages of a network, no matter which LCM program sends them.
 #include <lcm/lcm.h>
 #include <unistd.h>
 

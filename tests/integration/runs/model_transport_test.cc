@@ -1,5 +1,5 @@
-// Each choice of a model for sensors, fusion or cars has one digest on all transports. `fogline
-// check` names impossible choices.
+// With each choice of a model for sensors, fusion or cars, a run has the same digest on all
+// transports. `fogline check` names impossible choices.
 #include <string>
 #include <vector>
 

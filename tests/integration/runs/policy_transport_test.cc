@@ -1,5 +1,5 @@
-// With each policy, a run has the same digest on all transports. A policy that selects sensors is
-// used by two roles, arbitrator and fusion. Each role has its own instance of it.
+// With each policy, a run has the same digest on all transports. Two roles use a policy that
+// selects sensors: arbitrator and fusion. Each role has its own instance of the policy.
 #include <string>
 #include <string_view>
 #include <vector>

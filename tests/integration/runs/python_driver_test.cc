@@ -1,4 +1,4 @@
-// The driver in Python that docs/protocol.md shows drives the host.
+// Tests of the driver in Python that docs/protocol.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Runs a program with sockets that lose every fifth received packet.
+// This script runs a program with sockets that lose a fifth of the received packets.
 constexpr const char* kLossy = R"(import random, runpy, socket, sys
 class Lossy(socket.socket):
     lost = 0
@@ -62,7 +62,7 @@ class PythonDriverTest : public testing::Test {
     return command;
   }
 
-  /// Compiles the driver in C++ with the same arithmetic. @return the program's path
+  /// Compiles bare_driver.cc, a driver in C++ with the same arithmetic. @return the program's path
   std::string BareDriver() const {
     const std::string program = folder_.File("bare");
     const Outcome built =
@@ -125,7 +125,7 @@ TEST_F(PythonDriverTest, ThatIsKilledIsReplacedInTheMiddleOfTheRun) {
   Background run(Run({"--pace", "10", "--stall-timeout", "30"}));
   {
     Background first(Python({"driver.py"}));
-    // WHEN the driver is killed after a step was logged, and another driver is started
+    // WHEN the driver is killed after some steps were logged, and another driver is started
     ASSERT_TRUE(GrowsTo(100'000, folder_.File("run.lcm"))) << run.Err();
     first.Signal(SIGKILL);
     first.Wait();

@@ -1,4 +1,5 @@
-// A leader that was recorded on a road: the shipped scenario and its recording.
+// Tests of the scenario recorded_lead.json, whose leader moves as a real car did on a road, and of
+// the recording.
 #include <algorithm>
 #include <cstdio>
 
@@ -66,19 +67,20 @@ TEST_F(RecordedLeadTest, IsFollowedFor700SecondsInClearAirWithoutACollision) {
 }
 
 TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
-  // The fog lasts from 300 s to 400 s of the recording. The run begins at 200 s of the recording.
+  // The run begins at 200 s of the recording. The fog lasts from 300 s to 400 s of the recording,
+  // which is from 100 s to 200 s of the run.
   const ScratchFolder folder;
   std::vector<std::string> more{"--transport", "udpm", "--log", folder.File("fog.lcm")};
   more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
   const nlohmann::json metrics = Run(more);
   EXPECT_EQ(metrics["collision"], 0);
-  // The fog has deceived the LiDAR, because the error is far larger than the noise of the sensors.
+  // The error is far larger than the noise of the sensors. So the fog has deceived the LiDAR.
   EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
 }
 
 TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsTimeGap) {
-  // GIVEN an ACC with the time gap and the standstill distance of the real car. They come from a
-  // straight line that was fitted to the gaps of this car
+  // GIVEN an ACC with the time gap and the standstill distance of the real car. Both values come
+  // from a straight line that was fitted to the gaps of this car
   const ScratchFolder folder;
   Run({"--transport", "direct", "--log", folder.File("second.lcm"), "--set", "/acc/headway_s=0.82",
        "--set", "/acc/standstill_m=6.5", "--set", "/world/host_speed_mps=17.68", "--set",

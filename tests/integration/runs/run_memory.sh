@@ -11,7 +11,7 @@ mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# Prints a peak of resident memory in KiB: that of the largest process of a run with $1 steps.
+# Prints the peak resident memory, in KiB, of the largest process of a run with $1 steps.
 peak() {
   /usr/bin/time --format=%M --output="$folder/peak" "$fogline" run scenario/paper.json --quiet \
     --transport "$transport" --set "/steps=$1" --log "$folder/$1.lcm" >&2

@@ -294,7 +294,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const Elsewhere elsewhere;
   std::string err;
   // The error must say that the arbitrator waits for the driver. If a busy machine gave another
-  // role no processor for a second at the end of the run, the error may name this other role. Then
+  // role no processor time for 1 s at the end of the run, the error may name this other role. Then
   // the test tries again.
   constexpr int kTries = 3;
   const auto names_another = [&err] {
@@ -338,7 +338,8 @@ TEST(SwapTest, OfTwoProcessesOfOneRoleOneDrivesAndTheOtherLeavesTheRunAlone) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  // The run takes 12.5 s. So it has not ended when a busy machine starts one of the drivers late.
+  // The run takes 12.5 s. So the run has not ended even if a busy machine starts one of the drivers
+  // late.
   auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "4"});
   const Outcome run = RunCommand(command);
@@ -352,7 +353,7 @@ TEST(SwapTest, OfTwoProcessesOfOneRoleOneDrivesAndTheOtherLeavesTheRunAlone) {
 TEST(SwapTest, APartThatWasBuiltWithOtherMessageTypesIsRefusedByName) {
   const Elsewhere elsewhere;
   const std::string url = runtime::FreshMulticastUrl();
-  // GIVEN a driver built with a lidar_t that has one field more, although it never reads a lidar_t
+  // GIVEN a driver that never reads a lidar_t, but was built with a lidar_t that has one field more
   ListeningDriver driver(elsewhere.BareDriver(elsewhere.OtherTypes()), url);
   const Outcome run =
       RunCommand(RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm")));

@@ -1,5 +1,5 @@
-// The car must ask the driver to take over. The run is the same on every transport, and its log
-// shows the request.
+// Runs in which the car must ask the driver to take over. A run is the same on every transport, and
+// its log shows the request.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -146,7 +146,7 @@ TEST_F(TakeOverRunTest, ShowsWhatDroveUntilTheTakeOver) {
   EXPECT_LE(value("sensor_excluded_s"), value("automation_drove_s"));
   EXPECT_NEAR(value("automation_drove_s") + value("driver_drove_s"), value("judged_s"), 1e-9);
   EXPECT_EQ(measures["manoeuvre_drove_s"], 0);
-  // THEN `fogline events` and the page of `fogline report` show this time
+  // THEN `fogline events` and the page of `fogline report` show the time without the LiDAR
   const Outcome listed = RunCommand({Program("fogline"), "events", Log("direct")});
   EXPECT_THAT(listed.out, HasSubstr("; of this with a sensor excluded 1."));
   const std::string page = folder_.File("page.html");

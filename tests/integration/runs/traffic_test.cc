@@ -141,9 +141,9 @@ class CompareTest : public testing::Test {
                                     "--transport", "direct", "--log", folder_.File("calm.lcm")});
     ASSERT_EQ(run.code, 0) << run.err;
   }
-  /// Writes a recorded car that is always 1 m/s slower than the host. The run's 4 s begin at 5 s of
-  /// the recording. In the first half of the run the car is 3 m nearer to the leader than the host
-  /// is, and in the second half 3 m further away. @return the file
+  /// Writes the recording of a car that is always 1 m/s slower than the host. The run's 4 s begin
+  /// at 5 s of the recording. In the first half of the run the car is 3 m nearer to the leader than
+  /// the host is, and in the second half 3 m further away. @return the file
   std::string Recording() const {
     const std::string file = folder_.File("real.csv");
     std::ofstream out(file);
@@ -201,7 +201,8 @@ TEST_F(CompareTest, GivesTheRootMeanSquareOfBothDifferences) {
   const Outcome outcome = Compare({Recording(), "--json", "--out", folder_.File("both.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  // The sensors have a noise of 1 mm. It moves the host by less than this distance, in m.
+  // The sensors have a noise of 1 mm. This noise changes the gaps by less than kNoise in m, and the
+  // speeds by less than kNoise in m/s.
   constexpr double kNoise = 0.02;
   EXPECT_EQ(json["steps"], 41);
   EXPECT_NEAR(json["speed_rmse_mps"], 1, kNoise);

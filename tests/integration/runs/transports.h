@@ -1,4 +1,5 @@
-// Expectation that one run has the same digest on every transport.
+// Helpers for tests that compare the digests of a run on several transports: in one process, in
+// memory and over the network.
 #pragma once
 
 #include <gtest/gtest.h>

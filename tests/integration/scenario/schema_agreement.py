@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Do the JSON schema and the loader agree on what a scenario is?
 
-Compares the verdict of `fogline check --json` (one process for all files) with that of a plain
-draft-07 validator on the repository's good and bad files, on files with one field at, and just
-beyond, the ends of its range, and on random mutations of the good files. Exit code 0: they agree
-on every file, and every default obeys the schema of its own field.
+Compares the verdicts of `fogline check --json` (one process for all files) with the verdicts of a
+plain draft-07 validator. The files are the good and bad files of the repository, files with one
+field at or just beyond an end of its range, and random mutations of the good files. The exit code
+is 0 if both agree on every file, and if every default obeys the schema of its own field.
 """
 
 import argparse
@@ -27,7 +27,9 @@ RANDOM_MUTATIONS = 600
 
 
 def load(data):
-    """Parses JSON as strictly as RFC 8259 and I-JSON (RFC 7493) demand. Raises ValueError for other text."""
+    """Parses JSON as strictly as RFC 8259 and I-JSON (RFC 7493) demand.
+
+    Raises ValueError for other text."""
 
     def refuse_duplicates(pairs):
         keys = [key for key, _ in pairs]
@@ -56,9 +58,11 @@ def schema_verdict(validator, path):
 
 
 def loader_verdicts(fogline, paths):
-    """For each path None if the loader accepts it, otherwise the reason. It ignores mistakes that a schema
-    cannot find: in a recorded leader's or SUMO's own files (rules csv-*, sumo-*), and in fields that contradict
-    each other (rule impossible)."""
+    """For each path None if the loader accepts the file, otherwise the reason.
+
+    Mistakes that no schema can find do not count: mistakes in the files that a scenario names for a
+    recorded leader or for SUMO (rules csv-*, sumo-*), and fields that contradict each other (rule
+    impossible)."""
     names = [str(path) for path in paths]
     process = subprocess.run([fogline, "check", "--json", *names], capture_output=True, check=False)
     if process.returncode not in (0, 2):
@@ -71,7 +75,9 @@ def loader_verdicts(fogline, paths):
 
 
 def leaves(schema, path=()):
-    """Every field of the schema that is not a section, as (path, its schema). * stands for a list's item."""
+    """Every field of the schema that is not a section, as (path, its schema).
+
+    In a path, * stands for an item of a list."""
     for name, part in schema.get("properties", {}).items():
         yield from leaves(part, path + (name,))
     if schema["type"] == "array":
@@ -123,7 +129,7 @@ def places(node):
 
 
 def mutate(document, fragments, rng):
-    """A copy of the document: one to three values or keys are changed, removed or copied elsewhere."""
+    """A copy of the document in which one to three values or keys are changed, added or removed."""
     document = copy.deepcopy(document)
     for _ in range(rng.randint(1, 3)):
         spots = list(places(document))
@@ -181,7 +187,9 @@ def check_defaults(schema):
 
 
 def compare(fogline, validator, what, paths, at_least):
-    """The number of files on which schema and loader disagree. Prints both reasons for each such file on stderr."""
+    """The number of files on which schema and loader disagree.
+
+    Prints both reasons for each such file on stderr."""
     disagreements = accepted = 0
     for path, loader in zip(paths, loader_verdicts(fogline, paths)):
         schema = schema_verdict(validator, path)

@@ -169,7 +169,7 @@ TEST(FindingsTest, EveryFindingSaysInWhichParameterSetsItHolds) {
 TEST(FindingsTest, TheComparisonsOnParameterSetsAreThoseOfTheirFinding) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"ensemble", "--seeds", "1", "--out", folder.path()}).code, 0);
-  // Such a row begins: 3,heading,policy,"With a false echo ...",set 1,
+  // A row of ensemble.csv begins like this: 3,heading,policy,"With a false echo ...",set 1,
   static const std::regex kRow("(\\d+),([^,]*),([^,]*),\"(.*)\",set (\\d+),.*");
   std::istringstream csv(ReadText(folder.File("ensemble.csv")));
   std::string line;

@@ -41,7 +41,7 @@ class DemoFolder {
   static std::string BuildCommands() {
     return "mkdir -p build; ln -sfn " + ProgramDirectory().string() + " build/bin";
   }
-  /// Makes tools/NAME, which writes its call and then executes `commands`.
+  /// Makes the script tools/NAME. It writes its call into `calls`, and then executes `commands`.
   void Write(const std::string& name, const std::string& commands) const {
     const std::filesystem::path script = folder_.path() / "tools" / name;
     std::ofstream(script) << "#!/bin/sh\necho \"$0 $*\" >>calls\n" << commands << "\n";
@@ -94,7 +94,7 @@ TEST(DemoTest, ShowsItsResultBeforeItBuildsWhatTheResultDoesNotNeed) {
                    ProgramDirectory().string() +
                    "/fogline-* .\n"
                    "rm fogline-web fogline-relay\n"
-                   // A copy looks for the other programs in its own folder.
+                   // fogline is a copy and no link, so it looks for the other programs here.
                    "cp " +
                    Program("fogline") + " .");
   const Outcome demo = RunCommand(folder.Typed("tools/demo"));

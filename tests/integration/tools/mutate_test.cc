@@ -16,12 +16,13 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kMutations = 150;  // a list must have at least so many mutations
+constexpr int kMutations = 150;  // a list must have at least this number of mutations
 
 class MutateTest : public testing::Test {
  protected:
   /// Makes a tree whose function V0 has a unit test, and whose function V1 has a property test. The
-  /// other functions have no tests. Each function has a mutation. All mutations name the unit test.
+  /// other functions have no tests. Each function has a mutation. The list of mutations names the
+  /// unit test as the test of every mutation.
   MutateTest() {
     std::filesystem::create_directories(folder_.path() / "tests");
     std::filesystem::copy(SourceDirectory() / "tests/mutations",

@@ -77,8 +77,8 @@ std::string ScriptOf(const std::vector<Block>& blocks) {
   return script;
 }
 
-/// The lines of a text without the parts that may differ. These parts are a time, such as " in 0.62
-/// s", with all that follows in its line, and spaces at the end of a line.
+/// The lines of a text without the parts that may differ: a time, such as " in 0.62 s", with the
+/// rest of its line, and spaces at the end of a line.
 std::vector<std::string> Comparable(const std::string& text) {
   static const std::regex kTime(" in [0-9.]+ s.*");
   static const std::regex kSpaces(" +$");
@@ -90,8 +90,8 @@ std::vector<std::string> Comparable(const std::string& text) {
   return lines;
 }
 
-/// The reason why a text does not show the whole lines of an output in their order; "" if the text
-/// shows them. A line "..." stands for any number of lines.
+/// The reason why the lines `shown` do not agree with the lines `printed`; "" if they agree. In
+/// `shown` a line "..." stands for any number of lines.
 std::string WhyNotShown(const std::string& shown, const std::string& printed) {
   constexpr const char* kLeftOut = "...";
   const std::vector<std::string> lines = Comparable(printed);
@@ -169,7 +169,7 @@ TEST(DocsTest, ThePartOfExtendingIsBuiltAndDrivesTheCarByTheCommandsThere) {
   const std::vector<Block> blocks = BlocksOf(ReadSource("docs/extending.md"));
   // WHEN a shell executes the commands of the page
   const Outcome outcome = clone.Run(ScriptOf(blocks));
-  // THEN the driver that these commands build drives the car
+  // THEN the commands have built a driver, and this driver drives the car
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("verified: world radar lidar"), std::string::npos) << outcome.out;
@@ -240,15 +240,16 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   std::size_t commands = 0;
   for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
     std::string command = (*at)[1].str();
-    // These commands take long. With few seeds or steps they write the same files.
+    // Some commands take long. With few seeds or steps they write files with the same names, and
+    // the test needs only the names.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
-    // The run shows its page until Ctrl-C, so `timeout` sends this signal after 20 s. A run of 20
-    // steps takes 2 s.
+    // With --view, the program shows its page until Ctrl-C. So `timeout` sends the signal of Ctrl-C
+    // after 20 s. The run is then over, because its 20 steps take 2 s.
     if (command.find("--view") != std::string::npos) {
       command = "timeout --preserve-status --signal=INT 20 " + command;
     }
-    // This run waits for a driver that a person starts.
+    // This run waits for a driver that a person starts. Here the test starts it.
     if (command.find("--external driver") != std::string::npos) {
       command = "fogline-driver & " + command + "; wait $!";
     }
@@ -256,7 +257,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
     ++commands;
   }
   EXPECT_GE(commands, 8U);
-  // AND the commands for lcm-logger write their log
+  // AND a log has the file name that lcm-logger gets in docs/network.md
   const std::string network = ReadSource("docs/network.md");
   std::smatch words;
   ASSERT_TRUE(std::regex_search(network, words, std::regex("\n    lcm-logger ([^ ]*) &")));

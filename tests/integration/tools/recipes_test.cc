@@ -92,13 +92,13 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
                    " [ $(grep -ao ACC_COMMAND open.lcm | wc -l) -lt 60 ] || break; sleep 0.02;"
                    " done\nkill $(jobs -p)");
   const Outcome shell = Shell(lines);
-  // THEN lcm-logger has logged messages of the running roles, which equal those of the run
+  // THEN lcm-logger has logged messages of the running roles. These messages equal those of the run
   for (const std::string_view channel : {"TRACK", "ACC_COMMAND"}) {
     const auto recorded = MessagesOf(folder_.File("run.lcm"), channel);
     const auto again = MessagesOf(folder_.File("open.lcm"), channel);
     EXPECT_EQ(recorded.size(), 60U);
     // lcm-logger may lose messages: if more than 30 messages wait for it, it loses the newest of
-    // them.
+    // them. So its log may have fewer than 60 messages of a channel.
     EXPECT_GT(again.size(), 10U) << shell.out << shell.err;
     for (const auto& [step, message] : again) EXPECT_EQ(message, recorded.at(step)) << step;
   }

@@ -22,9 +22,10 @@ using ::testing::Not;
 /// The file that npm installs.
 constexpr const char* kFile = "node_modules/chart/chart.js";
 
-/// A clone on a simulated machine, for a user other than root. The machine has all Debian packages
-/// except npm. Its npm comes from another source. Its only programs are those that the constructor
-/// makes. In these programs `$user` is the user who calls the program.
+/// A clone of Fogline on a simulated machine, for a user other than root. Every Debian package
+/// counts as installed, except npm. The machine has an npm from another source. The machine has
+/// only the programs that the constructor makes. In these programs `$user` is the user who calls
+/// the program.
 class SetupTest : public testing::Test {
  protected:
   SetupTest() {

@@ -66,7 +66,8 @@ TEST(SoakTest, RefusesANumberOutsideItsRangeInOneLine) {
 }
 
 TEST(SoakTest, TakesTheLargestSeedOfAScenario) {
-  // The time limit of this call has passed before the first run.
+  // The time limit of this call has passed before the first run. So the program checks its options,
+  // and makes no run.
   const Outcome outcome = Soak({"--minutes", "1e-9", "--seed", "9007199254740991"});
   EXPECT_NE(outcome.code, 2) << outcome.err;
   EXPECT_THAT(outcome.err, Not(HasSubstr("--seed")));

@@ -17,8 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// A folder with the programs that a script needs to print a text. These programs install, build
-/// and run nothing.
+/// A folder with only the programs that a script needs to print a text. If a script tries to do
+/// more, such as to build something, it fails, because the program for this is not in the folder.
 class BareShell {
  public:
   BareShell() {
@@ -98,7 +98,7 @@ class BuildFolder {
     std::ofstream(folder_.path() / "bin/ninja") << "#!/bin/sh\n" << ninja << "\n";
     std::filesystem::permissions(folder_.path() / "bin/ninja", std::filesystem::perms::owner_all);
   }
-  /// Calls tools/build for a target.
+  /// The command that calls tools/build for a target.
   std::vector<std::string> Command(const std::string& target = "all") const {
     return {"env",
             "-C",
@@ -130,8 +130,8 @@ TEST(ToolsTest, BuildNamesATargetThatIsNotThere) {
 }
 
 TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor) {
-  // GIVEN a ninja that prints the line of its first command in the form that NINJA_STATUS demands,
-  // and then an error of the compiler
+  // GIVEN a ninja that first prints its progress, in the format of the variable NINJA_STATUS, and
+  // then an error of the compiler
   const BuildFolder folder(
       "echo \"$NINJA_STATUS\" | sed 's/%f/1/; s/%t/2/; s/$/a.o/'\n"
       "echo 'b.cc:1: error: mistake'\nexit 1");

@@ -88,9 +88,9 @@ class CalibrateTest : public testing::Test {
 
 // The share of a field's range by which the search may miss the true value: 0.4 mm for the offset,
 // 1.5 mm for the fog's bias, 4 ms for the headway. A search ends when every number of the table is
-// within 0.001 points of the target. At that moment a field may still be a few thousandths of its
-// range away, because it moves the table only a little: 1 % of the offset's range moves the table
-// by 0.07 points.
+// within 0.001 points of the target. At that moment a field may still differ from its true value by
+// a few thousandths of its range, because the field changes the table only a little: 1 % of the
+// offset's range changes the table by 0.07 points.
 constexpr double kShareOfRange = 5e-3;
 
 TEST_F(CalibrateTest, RecoversTheFogAndTheOffsetBetweenTheSensors) {

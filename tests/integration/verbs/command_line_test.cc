@@ -222,7 +222,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
   for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
-    for (int limit = 12; limit <= 28; limit += 4) {  // the libraries open about so many files
+    for (int limit = 12; limit <= 28; limit += 4) {  // about as many files as the libraries open
       const Outcome outcome =
           RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
                       Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",

@@ -1,5 +1,5 @@
-// Programs that cannot write to stderr, or with a stderr that no process reads. Signals that end a
-// program.
+// Tests of programs that cannot write to stderr, or whose stderr no process reads. Tests of signals
+// that end a program.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -207,8 +207,9 @@ TEST(ConsoleTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
   ASSERT_EQ(RunCommand(sweep).code, 0);
   const std::string whole = Content(file);
   std::filesystem::resize_file(file, whole.rfind('\n', whole.size() - 2) + 1);
-  // stderr is closed, so the file of the sweep can get the number of stderr. The sweep reports on
-  // stderr how many rows the file already has, but this text must not come into the file.
+  // stderr is closed, so the file of the sweep can get descriptor 2, the number of stderr. The
+  // sweep reports on stderr how many rows the file already has. This text must not get into the
+  // file.
   EXPECT_EQ(RunCommand(Shell("exec 2>&-", sweep)).code, 0);
   EXPECT_EQ(Content(file), whole);
 }

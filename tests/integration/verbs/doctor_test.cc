@@ -69,7 +69,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
 }
 
 TEST(DoctorTest, KnowsThatAnExperimentRunsRoles) {
-  // GIVEN a process with the name of fogline-experiment that has started a role. The role ends with
+  // GIVEN a process with the name fogline-experiment that has started a role. The role ends with
   // this process
   const ScratchFolder folder;
   const std::string experiment = folder.File("fogline-experiment");
@@ -184,7 +184,8 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(Find(mended["findings"], "check", "multicast_route")["what"],
             "239.255.76.67 goes over loopback and stays on this machine (ttl=0)");
   EXPECT_EQ(Levels(mended, "multicast_loopback"), std::multiset<std::string>{"ok"});
-  // THEN this route is enough for this machine, but not for other machines
+  // THEN the route over loopback is enough for runs on this machine, but not for runs with other
+  // machines
   const Outcome wider = Doctor(island, kEverywhere);
   EXPECT_EQ(wider.code, 1);
   EXPECT_THAT(wider.out, HasSubstr("no other machine hears it"));
@@ -200,7 +201,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
   std::string heard;
-  do {  // on a busy machine a role may send nothing during the second for which doctor listens
+  do {  // on a busy machine a role may send nothing in the 1 s for which doctor listens
     doctor = Doctor(lab[1], kEverywhere);
     ASSERT_LE(doctor.code, 1) << doctor.out << doctor.err;
     heard = Find(json::parse(doctor.out)["findings"], "check", "other_runs")["what"];

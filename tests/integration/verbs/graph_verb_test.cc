@@ -79,7 +79,7 @@ TEST(GraphVerbTest, RefusesAPageWithoutATableAndKeepsIt) {
                              ": error: no table that begins with \"| role | program | does |\" or "
                              "\"| channel | type | from | to | what |\"\n");
   EXPECT_EQ(Content(page), "| role | program |\n");
-  // Of several pages none is changed.
+  // If one of several pages has no table, none of the pages is changed.
   const std::string good = folder.File("good.md");
   const std::string old = "| role | program | does |\n| a | b | c |\n";
   std::ofstream(good) << old;

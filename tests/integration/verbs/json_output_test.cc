@@ -78,7 +78,7 @@ TEST_F(JsonOutputTest, IsOfferedByEveryVerbButThoseThatExplainOrShow) {
   for (const std::string& verb : Verbs()) {
     SCOPED_TRACE(verb);
     const std::string help = RunCommand({Program("fogline"), verb, "--help"}).out;
-    // keys_test calls drive, which needs a terminal.
+    // Calls() lacks `drive`, because this verb needs a terminal. keys_test.cc calls it.
     const bool reports = calls.contains(verb) || verb == "drive";
     EXPECT_THAT(help, reports ? testing::Matcher<std::string>(HasSubstr("\n  --json "))
                               : Not(HasSubstr("--json")));

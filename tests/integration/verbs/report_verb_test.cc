@@ -216,7 +216,7 @@ TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
   // GIVEN a log that is cut off, and curves that would take minutes. The verb first prints that the
-  // log is incomplete
+  // log is incomplete, so after this text the verb is at work
   const ScratchFolder folder;
   const std::string log = folder.File("cut.lcm");
   RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log",

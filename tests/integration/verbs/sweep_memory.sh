@@ -12,8 +12,9 @@ mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# Prints the peak resident memory, in KiB, of a sweep of $1 runs. Each row is one run, because the
-# policy lets only the automation drive.
+# Prints the peak resident memory, in KiB, of a sweep of $1 runs. A sweep compares the run of each
+# row with a run without traded control. With the policy `none` both runs are equal, and the sweep
+# computes equal runs only once. So each row is one run.
 peak() {
   /usr/bin/time --format=%M --output="$folder/peak" "$fogline" sweep scenario/paper.json "${@:2}" \
     --set /arbitrator/policy=none --seeds "1:$1" --jobs 2 --out "$folder/$1.csv" >&2

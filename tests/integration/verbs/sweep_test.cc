@@ -1,5 +1,5 @@
 // `fogline sweep` as a person uses it: the real program, which the tests kill, resume, and call
-// with bad arguments. The tests compare the bytes of its file.
+// with bad arguments. The tests compare the bytes of the file that the sweep writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -162,8 +162,9 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
 TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:4"};
   const std::string whole = Made("file.csv", sweep);
-  // GIVEN a file that ends early, and in which one digit was altered. The digit is in the middle of
-  // a row, far from the key of the row
+  // GIVEN a file that ends early, and in which one digit was altered. The digit is near the end of
+  // a row in the middle of the file, far from the axis values and the seed at the beginning of the
+  // row
   std::string text = whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1);
   const std::size_t digit = text.find_last_of("123456789", text.find('\n', text.size() / 2) - 1);
   text[digit] = text[digit] == '1' ? '2' : '1';
@@ -289,8 +290,8 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
   const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
   const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
   const std::string rows = Made("rows.csv", kShort + cars + axis);
-  // A row has the value of the grid. After it, the row has the same cells as a sweep of the same
-  // cars without a grid.
+  // A row begins with the value of the grid. After this value, the row has the same cells as a
+  // sweep of the same cars without a grid.
   const Words aggressive{
       "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
       "--seeds", "1:1"};

@@ -245,7 +245,7 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
 
 TEST(TableOfRunsTest, CountsTheRunsThatEndInACollision) {
   EXPECT_EQ(TableRows({"--thresholds", "0.5", "--seeds", "1:3"})[0]["collisions"], 0);
-  // GIVEN a leader that makes an emergency stop, and two cars that can hardly brake
+  // GIVEN a leader that makes an emergency stop, and a host whose ACC can hardly brake
   const nlohmann::json rows =
       TableRows({"--thresholds", "1", "--seeds", "1:3", "--set", "/lead/profile=emergency_brake",
                  "--set", "/acc/min_acceleration_mps2=-0.1"});

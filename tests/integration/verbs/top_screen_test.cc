@@ -52,7 +52,7 @@ class EmulatedScreen {
     for (const std::string& row : cells_) text += row + "\n";
     return text;
   }
-  /// The row with reverse video, apart from the last row; "" if no row has it.
+  /// The row in reverse video; "" if there is none. The last row does not count.
   std::string Selected() const {
     for (std::size_t i = 0; i + 1 < cells_.size(); ++i) {
       if (selected_[i]) return cells_[i];
@@ -240,7 +240,7 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   ASSERT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
   EXPECT_THAT(top.screen().rows()[23], HasSubstr("q quit"));
   EXPECT_TRUE(top.Shows("the automation drives"));
-  // AND the table of senders has no room on the screen once a message of each channel has come
+  // AND the table of senders has no room on the screen after a message of each channel has come
   EXPECT_TRUE(top.WaitUntil([&] {
     return top.screen().Text().find("senders, by") == std::string::npos;
   })) << top.screen().Text();

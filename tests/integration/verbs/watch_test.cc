@@ -65,8 +65,9 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN top watches the run for two seconds. If the machine disturbs the run or top in this time,
-  // the test tries again. (top counts a message when it handles the message.)
+  // WHEN top watches the run for two seconds. top counts a message when it handles the message. So
+  // if the machine holds up the run or top in this time, top shows other rates, and the test tries
+  // again.
   std::string shown;
   const TimePoint last_try = Clock::now() + kPatience;
   while (!ShowsPace(shown) && Clock::now() < last_try) {
@@ -140,8 +141,8 @@ TEST(TopTest, LooksAtARelayToo) {
 }
 
 TEST(TopTest, ShowsALogThatLogplayerPlays) {
-  // So few steps that the kernel's buffer holds all their messages, even if top gets no processor
-  // time.
+  // The run has so few steps that the kernel's buffer holds all their messages, even if top gets no
+  // processor time.
   constexpr int kSteps = 12;
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
@@ -241,8 +242,9 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
                                                                       &lcm_destroy);
-  // From each burst, top receives at least the messages that fit into a small socket buffer, some
-  // 250 names. If top has a processor to itself, it receives all messages.
+  // From each burst, top receives at least the messages that fit into a small socket buffer, about
+  // 250 names. If top has a processor to itself, it receives all messages. So the test sends bursts
+  // until top has forgotten kEnough names.
   constexpr int kNames = 4000;
   constexpr int kEnough = 50'000;  // 10 MB of names
   int invented = 0;

@@ -124,6 +124,7 @@ TEST_F(ViewAccessTest, ClosesAClientThatSendsTooManyFrames) {
   std::uint16_t code = 0;
   try {
     // If the machine sends fewer than 200 frames per second, the server never cuts this client off.
+    // So the loop has a limit.
     for (int i = 0; i < 100'000; ++i) client.Send("{}");
   } catch (const WebClosed& closed) {
     code = closed.code();
@@ -145,7 +146,8 @@ TEST_F(ViewAccessTest, TurnsAway65thClient) {
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
   EXPECT_TRUE(process().WaitForErr("64 viewers are connected already"));
   clients.pop_back();
-  // The server gives the place to another client when it has noticed the end of the connection.
+  // The server accepts another client only after it has noticed that the last client is gone. So
+  // the test tries again and again.
   const TimePoint end = Clock::now() + milliseconds(20'000);
   int status = 503;
   while (status != 101 && Clock::now() < end) status = StatusOfSocket({});
@@ -222,7 +224,8 @@ TEST(ViewTokenTest, LetsAViewerWithTheTokenInBesidesIdleConnections) {
   }
   WebClient viewer(viewed.port(), {.target = "/ws?token=" + token});
   EXPECT_EQ(ReceiveOp(viewer, "hello")["mode"], "live");
-  // More idle connections do not push the viewer out.
+  // To accept 200 more connections, the server closes older idle connections. The viewer must stay
+  // connected.
   for (int i = 0; i < 200; ++i) {
     idle.emplace_back(context).connect({boost::asio::ip::address_v4::loopback(), viewed.port()});
   }

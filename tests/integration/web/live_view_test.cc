@@ -54,7 +54,7 @@ class Got {
     }
   }
   std::size_t size() const { return messages_.size(); }
-  /// Whether no message came after one that the program had received later.
+  /// Whether the messages came in the order in which the program had received them.
   bool in_order() const { return in_order_; }
   const std::string& Of(std::int64_t step, std::size_t channel) {
     return messages_[std::pair(step, channel)];

@@ -124,7 +124,7 @@ TEST(LogViewTest, GivesEachMessageOfEachStepAsItStandsInTheLog) {
   EXPECT_EQ(got.size(), messages);
 }
 
-/// The times and values of a frame of kind 3.
+/// The times and values of a frame of kind 3, the answer to a request for a series.
 /// @param whole whether the frame must say that it has every value
 std::pair<std::vector<double>, std::vector<double>> SeriesOf(const WebFrame& frame,
                                                              std::uint32_t id, bool whole) {
@@ -301,7 +301,8 @@ TEST(LogViewTest, OpensAMillionMessagesIn3sAnd300MB) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());
   EXPECT_EQ(ReceiveOp(client, "log")["last_step"], kSteps - 1);
-  // The limit is for processor time, in which other processes of a busy machine do not count.
+  // The limit is for processor time, because this time does not include other processes of a busy
+  // machine.
   EXPECT_LT(ProcessorTime_s(viewed.process().pid()), 3.0);
   // The client asks for curves of the whole log, and for steps in all parts of the log.
   for (const char* field : {"host_gap_m", "follower_gap_m[0]"}) {

@@ -16,14 +16,14 @@ namespace {
 
 using nlohmann::json;
 
-/// Publishes on a channel until the server tells the client of this channel.
+/// Publishes on a channel until the server tells the client that this channel exists.
 /// @return false if this takes longer than kFrameLimit
 bool Hears(WebClient& client, const std::string& url, const std::string& channel) {
   runtime::Bus bus(url);
   const TimePoint end = Clock::now() + kFrameLimit;
   while (Clock::now() < end) {
     bus.Publish(channel, Payload(10));
-    const WebFrame frame = client.Receive();  // a health message at the latest
+    const WebFrame frame = client.Receive();  // if nothing else comes, a health message
     if (frame.binary) continue;
     const json text = json::parse(frame.bytes);
     if (text["op"] == "channel" && text["name"] == channel) return true;

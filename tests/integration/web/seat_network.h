@@ -1,5 +1,5 @@
-// A seat of fogline-web, and the network of its run. A test takes the place of the run: it sends
-// TRUTH, and receives DRIVER_INPUT as the role driver does.
+// A seat of fogline-web, and the network of its run. The test replaces the run: it sends TRUTH like
+// the world, and receives DRIVER_INPUT like the driver.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,7 +39,8 @@ inline std::string Braking(std::int64_t sequence, double brake = 0.5) {
       .dump();
 }
 
-/// The network of a run. An object sends TRUTH, and keeps the DRIVER_INPUT that it receives.
+/// The network of a run. This class sends TRUTH to the network, and stores each DRIVER_INPUT that
+/// arrives from the network.
 class SeatNetwork {
  public:
   explicit SeatNetwork(const std::optional<runtime::SigningKey>& key = std::nullopt) : bus_(url_) {
@@ -72,7 +73,8 @@ class SeatNetwork {
     runtime::Encode(message, bytes_);
     bus_.Publish(ChannelOf<Message>().name, bytes_);
   }
-  /// Waits for the first new message that fits. @throws std::runtime_error after kPatience
+  /// Waits for the first new DRIVER_INPUT for which `fits` returns true. @throws std::runtime_error
+  /// after kPatience
   template <class Fits>
   driver_input_t Hear(const Fits& fits) {
     const TimePoint end = Clock::now() + kPatience;

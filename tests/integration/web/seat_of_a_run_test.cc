@@ -28,7 +28,7 @@ TEST_F(SeatPageTest, APersonStaysInTheRunWhenTheNetworkGetsAnotherOne) {
   network_.SendRun(kSeatRun);
   network_.SendTruth(7);
   network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
-  network_.SendTruth(7);  // else the run counts as silent on a busy machine
+  network_.SendTruth(7);  // otherwise the run may count as silent on a busy machine
   network_.SendRun(kOtherRun);
   network_.SendTruth(8, kOtherRun);
   WaitForTruthOf(viewer, kOtherRun);

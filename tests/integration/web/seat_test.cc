@@ -46,7 +46,8 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   EXPECT_EQ(page.protocol(), "fogline.drive.v1");
   ReceiveOp(page, "hello");
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "yours");
-  // The seat has received a step when a DRIVER_INPUT names this step.
+  // When a DRIVER_INPUT names step 7, the seat has received TRUTH of step 7. The test waits for
+  // this.
   network_.SendTruth(7);
   network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
   page.Send(Braking(40));
@@ -116,8 +117,8 @@ TEST_F(SeatPageTest, APageThatIsOpenedLateIsToldWhenTheRequestBegan) {
 }
 
 TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
-  // How often the program has printed so far that a page is silent. Before the program answers this
-  // request, it has printed everything about earlier events.
+  // The number of times that the program has reported a silent page. When the program answers the
+  // GET request, it has already printed its reports of all earlier events.
   const auto silences = [this] {
     EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
     const std::string err = viewed_.process().Err();
@@ -158,7 +159,7 @@ TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
   ReceiveOp(page, "seat");  // with the state "yours"
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "lost");
   EXPECT_TRUE(viewed_.process().WaitForErr("its page is silent"));
-  // From then on the seat tells the run every 50 ms that no person drives.
+  // While the page is silent, the seat tells the run every 50 ms that no person drives.
   const driver_input_t first = network_.Hear(IsAway);
   const driver_input_t second = network_.Hear(
       [&](const driver_input_t& input) { return input.sequence > first.sequence + 5; });
@@ -183,8 +184,8 @@ TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
     // second page gets the seat. Then the second page gives the seat back, and the test tries
     // again.
     second.Send(Away(1));
-    // If the first person already has the seat again, the server does not answer this input. But it
-    // has told the second page before that the seat is taken.
+    // If the first person already has the seat again, the server does not answer this input. But
+    // the server has already told the second page that the seat is taken.
     for (json told; told["op"] != "published" && told["state"] != "taken";) {
       const WebFrame frame = second.Receive();
       if (!frame.binary) told = json::parse(frame.bytes);
@@ -203,8 +204,8 @@ TEST_F(SeatPageTest, APageThatIsOnlyOpenGivesTheSeatToThePersonAtAnother) {
   second.Send(Braking(0));
   network_.Hear(IsThere);
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "yours");
-  // The first page sends nothing. On a busy machine it may already have lost the seat before the
-  // second page got it.
+  // The first page sends nothing. On a busy machine it may lose the seat before the second page
+  // gets the seat. Then the first page is told "lost" before it is told "taken".
   nlohmann::json told;
   do {
     told = ReceiveOp(*first, "seat");

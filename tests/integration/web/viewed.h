@@ -37,7 +37,8 @@ class Viewed {
   struct Started {
     std::vector<std::string> command;
   };
-  /// Starts a command that starts `fogline view` and prints its address first.
+  /// Starts a command that starts `fogline view`. The first line of its output must be the address
+  /// of the view.
   explicit Viewed(const Started& started) : process_(started.command) {
     if (!process_.WaitForOut("\n")) return;
     address_ = process_.Out().substr(0, process_.Out().find('\n'));
@@ -119,8 +120,8 @@ inline runtime::Bytes BytesOf(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// The server sends several frames per second, so a test needs a limit when it waits for a certain
-// frame.
+// The server sends several frames per second, so Receive() does not reach its own time limit. A
+// test that waits for a certain frame needs this limit.
 inline constexpr Duration kFrameLimit = milliseconds(60'000);
 
 /// Waits for a text frame with this "op", and drops other frames. @return the frame. @throws

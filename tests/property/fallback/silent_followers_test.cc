@@ -72,7 +72,7 @@ TEST(SilentFollowersTest, WithoutASilentFollowerIsTheLockstepRun) {
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
     // GIVEN a run in lockstep with the same commands to the host, THEN the commands of the
-    // followers are equal in both runs
+    // followers are equal in this run and in the run in lockstep
     const follower_command_t& command = follower.Step(lockstep.truth());
     ASSERT_EQ(m.truth.follower_position_m, lockstep.truth().follower_position_m);
     ASSERT_EQ(m.vehicle.followers().acceleration_mps2, command.acceleration_mps2);

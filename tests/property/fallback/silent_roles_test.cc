@@ -92,8 +92,8 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }
 
-  // Checks in each step that the host brakes within the limits of the manoeuvre, and in the last
-  // step that the host stands (if the run is long enough after step `death`).
+  // Checks in each step that the host brakes within the limits of the manoeuvre. In the last step
+  // the host must stand, if the run is long enough after step `death`.
   void CheckHostStops(std::int64_t death, const Moment& m) {
     CheckStops(death, m, m.truth.host_speed_mps, m.truth.host_acceleration_mps2);
   }

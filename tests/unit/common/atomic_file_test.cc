@@ -81,7 +81,7 @@ TEST_F(AtomicFileTest, ReplacesNoFolder) {
 }
 
 TEST_F(AtomicFileTest, FollowsNoLinkThatLiesWhereItWrites) {
-  // GIVEN links with the names that an attacker could predict
+  // GIVEN links with names that an attacker could expect for the temporary file
   const std::string precious = folder_.File("precious");
   std::ofstream(precious) << "precious";
   for (const char* ending : {".part", ".tmp", "~"}) {

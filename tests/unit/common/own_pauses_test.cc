@@ -14,7 +14,8 @@ TEST(OwnPausesTest, AreNotHeldAgainstOthers) {
   pauses.Attend(At(20'500));
   EXPECT_EQ(pauses.HeldAgainst(At(0), At(20'500)), milliseconds(500));
   EXPECT_EQ(pauses.HeldAgainst(At(20'450), At(20'500)), milliseconds(50));
-  // If the last message of a process came during the pause, the rest of the pause does not count.
+  // If the last message of a process came during the pause, the rest of the pause does not count as
+  // silence of the process.
   EXPECT_EQ(pauses.HeldAgainst(At(10'000), At(20'500)), milliseconds(100));
   EXPECT_EQ(pauses.TakeLongest(), milliseconds(20'000));
   EXPECT_EQ(pauses.TakeLongest(), Duration::zero());

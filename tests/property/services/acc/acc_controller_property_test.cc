@@ -36,8 +36,8 @@ double PreviousControl(const AccSection& section, double acceleration_mps2) {
                     -section.min_acceleration_mps2 / section.engine_gain);
 }
 
-// Calls `check` for random situations, with the parameters of an ACC, a step in s, an input, the
-// controller, and the controller's first output for this input.
+// Calls check(section, step_s, input, controller, output) for random situations. `output` is the
+// controller's first output for this input.
 template <class Check>
 void ForRandomSituations(std::int64_t seed, Check&& check) {
   Draw draw(seed);
@@ -65,8 +65,8 @@ TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
   EXPECT_LT(on_limits, 1900);
 }
 
-// The controller does not run the exact check of a plan's limits if upper bounds of the plan's
-// controls and of their changes already prove that the plan keeps the limits.
+// The controller computes upper bounds of a plan's controls and of their changes. If these bounds
+// prove that the plan keeps the limits, the controller does not run the exact check.
 TEST(AccControllerPropertyTest, BoundsAreNeverBelowThePlanAndProveOnlyWhatTheExactCheckFinds) {
   Draw draw(7);
   int proved = 0;

@@ -17,7 +17,7 @@ from cvxopt import blas, lapack, matrix, solvers
 PROBLEMS = 1000
 WITH_ACTIVE_LIMITS = 900
 COST_TOLERANCE = 1e-6  # relative
-COST_FLOOR = 1e-3  # costs below it may differ by 1e-9, because CVXOPT stops at 1e-10
+COST_FLOOR = 1e-3  # below this cost, the tolerance is 1e-9, because CVXOPT stops at 1e-10
 LIMIT_TOLERANCE = 1e-8  # in the units of a row; the values of a row are up to some hundreds
 
 solvers.options.update(show_progress=False, abstol=1e-10, reltol=1e-10, feastol=1e-10, maxiters=200)

@@ -58,8 +58,8 @@ TEST(QpPropertyTest, RandomProgramsAreSolvedToTheirMinimum) {
   EXPECT_GT(with_active_limits, 1500);
 }
 
-// One solver solves all situations of an AccSection. It starts each from the solution of the
-// previous one, so most starting points are far from the minimum.
+// One solver solves all situations of an AccSection. It starts each situation from the solution of
+// the previous situation, so most starting points are far from the minimum.
 TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
   Draw draw(2);
   int with_active_limits = 0;

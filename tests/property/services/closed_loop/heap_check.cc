@@ -1,8 +1,9 @@
-// Checks that only the first step of the closed loop allocates memory, and that the measures do not
-// allocate memory. The check covers every shipped scenario, every fog model and policy, one car,
-// and a column of mixed vehicles. The check also covers each step of the ACC, whatever path its
-// solver takes, and of the models of vehicle, driver and follower. The program replaces malloc, so
-// it is separate from other tests. It prints the allocations, and exits with 1 if there are any.
+// Checks that runs in the closed loop and their measures allocate no memory after the first step.
+// The runs cover every shipped scenario with every fog model and policy, columns of mixed vehicles,
+// requests to take over, and a human driver with all weaknesses. The program also checks that no
+// step of the ACC allocates memory, on any path of its solver, and no step of the models of
+// vehicle, driver and follower. The program replaces malloc, so it is separate from other tests. It
+// prints the numbers of allocations, and exits with 1 if a check fails.
 #include <cstddef>
 #include <cstdio>
 

@@ -91,7 +91,8 @@ TEST(SharedRunsProperty, HaveTheMessagesOfEveryShippedScenario) {
 
 TEST(SharedRunsProperty, ARequestEndsTheSharingIfTheDriverIsAwareOfIt) {
   // GIVEN a driver whose awareness depends on the mode, and an arbitrator that requests the driver
-  // to take over. During the request the automation still drives, so at first only the mode differs
+  // to take over. During the request the automation still drives, so at first the two runs differ
+  // only in the mode. The driver notices the mode, so the runs share no step after the request
   std::vector<Scenario> scenarios(
       2, LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json",
                       {"/human/loses_awareness=true", "/arbitrator/take_over/mode=requested"}));
@@ -106,7 +107,8 @@ TEST(SharedRunsProperty, ARequestEndsTheSharingIfTheDriverIsAwareOfIt) {
 }
 
 TEST(SharedRunsProperty, ShareTheStepsBeforeTheHumanDrives) {
-  // The human of the paper's experiment drives from step 203 on (threshold 0.5).
+  // The human of the paper's experiment drives from step 203 on (threshold 0.5). So the two runs
+  // share only the 203 steps before step 203.
   std::vector<Scenario> scenarios(2, LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"));
   scenarios[0].arbitrator.policy = Policy::kNone;
   closed_loop::SharedRuns runs;

@@ -61,9 +61,9 @@ Outcome OutcomeOf(Scenario scenario, int seeds) {
 constexpr TransferProfile kProfiles[] = {TransferProfile::kLinear, TransferProfile::kSigmoid,
                                          TransferProfile::kJerkLimited};
 
-// At transfers in the paper's experiment the command jumps by only a few cm/s2 (0.3 to 0.4 m/s3).
-// So even abrupt transfers keep the limit kSmooth_mps3. In this experiment a profile may cost at
-// most three percentage points of SI.
+// At transfers in the paper's experiment the command jumps by only 3 to 4 cm/s2 in a step of 0.1 s.
+// This is a jerk of 0.3 to 0.4 m/s3. So even abrupt transfers keep the limit kSmooth_mps3. In this
+// experiment a profile may cost at most three percentage points of SI.
 TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePointsOfSafety) {
   for (const int seeds : {1, 40}) {
     Scenario scenario = Paper();
@@ -165,9 +165,11 @@ class Ramp {
   int steps_ = 0;
 };
 
-/// Computes the command as the profile defines it, from the mixed offers. Each change of
-/// `human_wanted` starts the limits. They end when the command has reached the mixed offers and the
-/// time of the gate is over, or in an emergency.
+/// Computes the command as the profile defines it. `target_mps2` is the mean of both offers,
+/// weighted with the authorities. Each change of `human_wanted` starts the limits of the jerk and
+/// of the gate, if the scenario has them. A target below -yield_mps2 is an emergency and ends the
+/// limits. The limits also end when the command has reached the target and the time of the gate is
+/// over.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)
@@ -269,11 +271,11 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
   }
 }
 
-// The ACC plans from the real acceleration of the host, whichever side gave the last command. So in
-// every step of a return (a jump or a ramp) the ACC's offer is near the last command. The
-// difference is at most (1 - exp(-h/T_e)) h max_jerk, with the step h and the engine's time
-// constant T_e, if the last command is within the ACC's limits. So the ACC's share of the new
-// command makes no jump.
+// The ACC plans from the real acceleration of the host, whichever side gave the last command. So if
+// the last command is within the ACC's limits, the ACC's offer differs from this command by at most
+// (1 - exp(-h/T_e)) h max_jerk, with the step h and the engine's time constant T_e. This holds in
+// every step of a return to the automation, whether the return is a jump or a ramp. So the ACC's
+// share of the new command makes no jump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

@@ -29,7 +29,7 @@ struct Ensemble {
       std::vector<Eigen::Vector3d>(kSteps, Eigen::Vector3d::Zero());
 };
 
-// A scenario in which the position of the car ahead varies by some 15 m in these steps. The car
+// A scenario in which the position of the car ahead varies by about 15 m in kSteps steps. The car
 // stays ahead of the host, and so near that the lateral offsets of the sensors have an effect.
 Scenario GentleScenario() {
   Scenario scenario;
@@ -120,9 +120,9 @@ class ConsistencyTest : public ::testing::TestWithParam<Case> {
 TEST_P(ConsistencyTest, ErrorsHaveTheReportedCovariance) {
   const Ensemble sums = Simulate(World(), World(), GetParam().dropout);
   EXPECT_LE(NeesOutside(sums), MostNeesOutside());
-  // The expected mean is 3, the dimension of the state. The means over other groups of a hundred
-  // seeds scatter by 0.06. For independent values they would scatter by 0.025. The tolerance is
-  // about three times 0.06.
+  // The expected mean is 3, the dimension of the state. From one group of a hundred seeds to
+  // another, the mean varies with a standard deviation of 0.06. It would be 0.025 if the errors of
+  // all steps were independent. The tolerance is about three times 0.06.
   EXPECT_NEAR(Mean(sums.nees), 3.0, 0.2);
 }
 

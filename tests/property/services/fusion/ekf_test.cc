@@ -132,8 +132,8 @@ TEST(EkfPropertyTest, PredictionInTwoHalvesIsThePredictionOfTheWhole) {
   EXPECT_LT((whole.covariance() - half.covariance()).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-// The covariance after a correction in Joseph's form, with whole 3x3 matrices. Ekf must equal it
-// bit by bit, so Ekf adds three products in Eigen's order, a + (b + c).
+// The covariance after a correction in Joseph's form, with whole 3x3 matrices. The covariance of
+// Ekf must have the same bits. So Ekf adds three products in Eigen's order, a + (b + c).
 Eigen::Matrix3d JosephForm(const Eigen::Matrix3d& p, const fusion::Ekf::Jacobian& jacobian,
                            double noise_variance) {
   const Eigen::RowVector3d h(jacobian(0), jacobian(1), 0);
@@ -177,9 +177,9 @@ TEST(EkfPropertyTest, PredictionAndCorrectionLeaveOutOnlyZeros) {
   }
 }
 
-// The filter keeps the updates of the covariance that it has computed, and uses them again for the
-// same values. A value must never get the update of another value. This also holds if values are
-// missing, come in another order, or come with another noise.
+// The filter keeps the covariance updates that it has computed. It uses an update again for the
+// same covariance, Jacobian and noise variance, and must never use it for others. This also holds
+// if values are missing, come in another order, or come with another noise.
 TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
   const Random random(10, Stream::kLidar);
   const std::array<fusion::Ekf::Jacobian, 4> jacobians{{{1, 0}, {0, 1}, {0.9, 0.3}, {0.8, 0}}};
@@ -203,7 +203,7 @@ TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
       const double noise_variance = is_usual || b < 0.5 ? 0.04 : 0.01;
       ekf.Correct(jacobian, a - b, noise_variance);
       fresh.Correct(jacobian, a - b, noise_variance);
-      // THEN both have the same estimate, to the last bit
+      // THEN both filters have the same estimate, to the last bit
       ASSERT_EQ(ekf.covariance(), fresh.covariance()) << "step " << k << ", value " << i;
       ASSERT_EQ(ekf.state(), fresh.state()) << "step " << k << ", value " << i;
     }

@@ -88,9 +88,10 @@ struct Outcomes {
   double target;
 };
 
-// The log powers of the target's echo, t + s X, and of the fog's echo, f + s Y, have independent
-// standard normal X and Y. An echo counts if its log power is above 0 and above the other one. With
-// the density phi and the distribution function Phi of the standard normal distribution:
+// The log power of the target's echo is t + s X, and the log power of the fog's echo is f + s Y,
+// with independent standard normal X and Y. An echo counts if its log power is above 0 and above
+// the log power of the other echo. With the density phi and the distribution function Phi of the
+// standard normal distribution:
 //   no echo  X < -t / s and Y < -f / s
 //   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
 Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {

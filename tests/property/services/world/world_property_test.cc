@@ -17,7 +17,7 @@ struct Commands {
   double follower_mps2;
 };
 
-// Commands for hard driving, with stops and collisions in many runs.
+// Random commands for hard driving. In many runs they lead to stops and collisions.
 std::vector<Commands> RandomCommands(std::uint64_t seed, std::int64_t steps) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> acceleration(-6.0, 5.0);

@@ -52,8 +52,9 @@ std::string Read(int fd) {
   return text;
 }
 
-/// Calls `run` in a child process with this stderr, because a process opens its stderr only once.
-/// @return the exit code of the child
+/// Calls `run` in a child process whose stderr is `standard_error`. Each call needs a new process,
+/// because the functions of console.h examine stderr only once in a process. @return the exit code
+/// of the child
 int InChild(int standard_error, const std::function<int()>& run) {
   const pid_t child = fork();
   if (child == 0) {

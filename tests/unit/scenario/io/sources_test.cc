@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// All fields of a scenario that are a number or a list of numbers. In Catalogue() each list of
-/// parts has one item.
+/// sections has one item, so the result has the fields of this item.
 std::vector<Field> AllNumbers() {
   std::vector<Field> numbers;
   for (const Field& field : Catalogue()) {

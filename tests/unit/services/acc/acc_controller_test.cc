@@ -179,7 +179,7 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep_s);
     cars.Advance(output.acceleration_mps2);
   }
-  // The engine's lag leaves a share of about e^-7 of the change.
+  // Because of the engine's lag, about e^-7 of the change is still missing.
   EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);
 }
 
@@ -213,11 +213,11 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep_s / section.engine_gain);
 }
 
-// When the automation takes over from a driver, the car may have any acceleration a. In a step of
-// h, the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to -K_e u.
-// -K_e u is the acceleration that the control u causes in the end. (K_e is engine_gain, T_e is
-// engine_time_constant_s.) -K_e u differs from a by at most h max_jerk_mps3, plus the amount by
-// which a is outside of the automation's limits.
+// When the automation takes over from a driver, the car may have any acceleration a. If the control
+// u does not change, the car finally has the acceleration a_u = -K_e u (K_e is engine_gain). In a
+// step of h, the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to
+// a_u (T_e is engine_time_constant_s). The difference between a_u and a is at most h max_jerk_mps3,
+// plus the amount by which a is outside of the automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep_s / section.engine_time_constant_s);
@@ -230,7 +230,7 @@ TEST(AccControllerTest, TakesOverWithoutABump) {
       // WHEN the driver accelerates or brakes
       cars.acceleration_mps2 = a;
       const double offered = acc.Step(cars.Sense()).acceleration_mps2;
-      // THEN the automation continues from this acceleration
+      // THEN the automation continues from the car's acceleration a
       const double outside =
           std::abs(a - std::clamp(a, section.min_acceleration_mps2, section.max_acceleration_mps2));
       EXPECT_LE(std::abs(offered - a), share * (section.max_jerk_mps3 * kStep_s + outside) + 1e-9)
@@ -247,8 +247,8 @@ TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLe
   // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
   for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
   cars.acceleration_mps2 = -1;
-  // THEN the control begins at the value that would keep this acceleration, and changes at the
-  // maximum rate
+  // THEN the control begins at the value that would keep the acceleration of -1 m/s2, and changes
+  // at the maximum rate
   const double change = section.max_jerk_mps3 * kStep_s / section.engine_gain;
   EXPECT_NEAR(acc.Step(cars.Sense()).control, 1 / section.engine_gain - change, 1e-9);
 }

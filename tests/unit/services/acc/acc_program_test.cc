@@ -93,8 +93,8 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
     const double settled = speed + section.engine_time_constant_s * x(acc::kOwnAcceleration);
     const double gap = x(acc::kDeltaD) + acc::SafeDistance(section, speed);
     const Index row = 5 * j;
-    // Under the fall-back plan this car stays below its maximum speed. So the speed limit of the
-    // program is the maximum speed.
+    // The limit of the speed is the maximum speed, because this car stays below it also under the
+    // fall-back plan (acc_program.h).
     EXPECT_NEAR(above(row), section.max_speed_mps - settled, 1e-12) << j;
     EXPECT_NEAR(below(row + 1), settled + z(0), 1e-12) << j;
     const double forgiven = z(0) * static_cast<double>(6 - j) / 6;
@@ -133,7 +133,7 @@ TEST(AccProgramTest, KeepsALimitOfTheGapThatOnlyThePresentAccelerationReaches) {
   VectorXd lower(30);
   VectorXd upper(30);
   acc::AccProgram(section, kStep_s).Limits(now, lower, upper);
-  // THEN the program has the six limits of the gap
+  // THEN the program has the limit of the gap in each of the six steps
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12 + 6);
 }
 
@@ -145,7 +145,8 @@ TEST(AccProgramTest, KeepsTheLimitsOfAGapThatIsTooSmallAndOpens) {
   VectorXd lower(30);
   VectorXd upper(30);
   acc::AccProgram(section, kStep_s).Limits(now, lower, upper);
-  // THEN the program has the six limits of the gap, although at the end the gap is large enough
+  // THEN the program has the limit of the gap in each of the six steps, although the gap is large
+  // enough in the last step
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12 + 6);
 }
 

@@ -66,8 +66,8 @@ TEST_F(PlaneTest, ProjectsOntoALine) {
 }
 
 TEST_F(PlaneTest, DropsALimitThatIsNoLongerActiveAtTheOptimum) {
-  // The point violates x + 100 y <= 50 most, but only x <= 0 and y <= 0.1 are active at the
-  // optimum.
+  // Of the three limits, the point violates x + 100 y <= 50 most. But at the optimum only x <= 0
+  // and y <= 0.1 are active.
   const MatrixXd constraints{{1, 100}, {1, 0}, {0, 1}};
   const auto result =
       Solve(constraints, Vector({-kInfinity, -kInfinity, -kInfinity}), Vector({50, 0, 0.1}));

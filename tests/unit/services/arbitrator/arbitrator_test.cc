@@ -140,7 +140,8 @@ TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
   Step(arbitrator, Differing(1));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
   EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 1.5);
-  // The difference of 3 m has left the window. The window has only the 1 m that is repeated.
+  // The difference of 3 m has left the window. The window has only the last difference of 1 m and
+  // its repetitions.
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
 }

@@ -1,5 +1,5 @@
 // Emergency braking by the arbitrator: while either side drives, during a minimal risk manoeuvre,
-// and while the arbitrator asks the driver.
+// and while the arbitrator asks the driver to take over.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -107,8 +107,8 @@ TEST(ArbitratorTest, BrakesInAManoeuvreUnderTheManoeuvresMode) {
   EXPECT_EQ(out.lambda_automation + out.lambda_human, 0);
 }
 
-// The arbitrator asks the driver. As long as the car brakes in an emergency, the mode is
-// EMERGENCY_BRAKING. Before and after the braking, the mode is REQUEST.
+// The arbitrator asks the driver to take over (mode REQUEST). As long as the car brakes in an
+// emergency, the mode is EMERGENCY_BRAKING. After the braking, the mode is REQUEST again.
 TEST(ArbitratorTest, BrakesAlsoWhileItAsksTheDriver) {
   Scenario scenario;
   scenario.aeb.enabled = true;

@@ -275,8 +275,8 @@ TEST_F(GuardedFailsafeTest, BrakesInTheMinimalRiskManoeuvreUnderItsMode) {
   ExpectMinimalRisk(Step(), kApplied_mps2 - 0.4);
 }
 
-// In decision kHold the command is the last command of the side that drives, not of emergency
-// braking.
+// In decision kHold the last command of the side that drives is repeated, and not the command of
+// emergency braking.
 TEST_F(GuardedFailsafeTest, HoldsTheCommandBeforeTheBraking) {
   ExpectEmergencyBraking(Step());
   track_.state[1] = 1;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep_s = 0.1;
 constexpr arbitrator::Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_mps2 = 1.0};
-// Tolerance for the rounding of a sum of some tens of changes of the command.
+// Tolerance for the rounding of a sum of a few dozen changes of the command.
 constexpr double kRounding = 1e-12;
 
 // The states in `count` steps in which the human shall have the authority `wanted`.

@@ -13,8 +13,8 @@
 namespace fogline {
 namespace {
 
-/// What a run shows after the first transfer back to the automation: the errors of the track's
-/// distance while the automation drives.
+/// The result of a run: the transfers back to the automation, and the errors of the track's
+/// distance while the automation drives after the first of these transfers.
 struct AfterHandBack {
   int returns = 0;       // of authority to the automation
   double wrong_s = 0;    // time in which the distance was wrong by more than 0.1 m

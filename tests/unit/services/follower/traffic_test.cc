@@ -215,7 +215,8 @@ TEST_F(FogSightOfPeopleTest, IsOffByDefaultAndThenFogChangesNothing) {
 }
 
 TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
-  // GIVEN the sight of section human, and a person who drives like the first car's driver
+  // GIVEN the sight that section `human` sets for the host's driver, and a person who drives like
+  // the driver of the first car
   Scenario scenario = Seeing(Sight::kFog);
   scenario.human.fog_sight.contrast = 0.4;
   const models::FogSight sight(scenario.human.fog_sight);

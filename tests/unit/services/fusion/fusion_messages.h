@@ -31,7 +31,7 @@ inline const track_t& Step(fusion::Fusion& fusion, const Messages& m) {
   return fusion.Step(m.ego, m.radar, m.lidar);
 }
 
-// Compares all fields of a track that readers of the track use.
+// Expects that two tracks have exactly the same state and the same covariance.
 inline void ExpectSameEstimate(const track_t& a, const track_t& b) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(a.state[i], b.state[i]) << i;

@@ -331,7 +331,8 @@ TEST(FusionTest, LearnsTheNoiseFromTheResidualAfterTheCorrection) {
   Step(plain, m);
   const track_t& before = Step(adapting, m);
   const double variance = before.innovation_variance[2];
-  // WHEN the noise is learned from the residual d R / S, whose prediction has the variance P R / S
+  // WHEN the noise is learned from the residual d R / S and from the variance of the corrected
+  // range, P R / S
   const double share = assumed / variance;
   const double residual = before.innovation[2] * share;
   const double seen = residual * residual + (variance - assumed) * share;

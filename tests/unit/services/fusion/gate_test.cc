@@ -9,8 +9,8 @@ constexpr double kInside = 1.0;
 constexpr double kOutside = 100.0;
 
 TEST(GateTest, LimitIsTheChiSquareQuantileOfOneDegreeOfFreedom) {
-  // Printed tables have 3.841 for 5 %, and 10.828 for 0.1 %. The tolerance is half a unit of their
-  // last digit.
+  // Printed tables of the chi-square distribution have 3.841 for 5 %, and 10.828 for 0.1 %. The
+  // tolerance is half a unit of the last printed digit.
   EXPECT_NEAR(fusion::Gate(0.95, 5).limit(), 3.841, 5e-4);
   EXPECT_NEAR(fusion::Gate(0.999, 5).limit(), 10.828, 5e-4);
 }

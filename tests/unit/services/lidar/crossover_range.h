@@ -17,12 +17,13 @@ inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
 }
 
-/// Range beyond which the echo of the fog is stronger than the echo of the target. At this range
-/// the ratio
-///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
-/// of the two powers is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)). J is
-/// `fog_strength_pm`, Gamma `reflectivity`, beta `backscatter_pmsr`, and alpha `extinction_pm`. R2
-/// is the range from which transmitter and receiver overlap fully.
+/// Range beyond which the echo of the fog is stronger than the echo of the target. The ratio of the
+/// two powers is
+///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2).
+/// At the crossover range rho is 1. So this range is AttenuatedRange_m of
+/// sqrt(Gamma / (pi beta J)). J is `fog_strength_pm`, Gamma `reflectivity`, beta
+/// `backscatter_pmsr`, and alpha `extinction_pm`. R2 is the range from which transmitter and
+/// receiver overlap fully.
 inline double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
                                double extinction_pm) {
   return AttenuatedRange_m(

@@ -36,8 +36,8 @@ double Crossover(const lidar::BeamOptics& optics, double reflectivity, double vi
                                 kBackscatterFactor / visibility_m, extinction_pm);
 }
 
-// The reference gives whole metres. The tolerance is half a metre for this rounding, plus a little
-// for the numerical integration of the reference.
+// The expected ranges in the tests below are whole metres. The tolerance is half a metre for this
+// rounding, plus a little, because these ranges come from a numerical integration.
 constexpr double kTableTolerance_m = 0.6;
 
 struct Row {

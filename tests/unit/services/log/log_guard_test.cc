@@ -129,8 +129,8 @@ TEST_F(OlderLogTest, IsNoFileOfAnotherKind) {
   std::ofstream(aside_) << "precious";
   EXPECT_EQ(TakeBackOlder(log_, "--log"), "");
   EXPECT_EQ(Content(aside_), "precious");
-  // The name for the older log is taken, so a run overwrites the log. Before the run begins, it
-  // changes neither file.
+  // A file of another kind has the name under which the older log would be kept. So the run will
+  // overwrite the log. Before the run begins, both files are unchanged.
   Replace();
   EXPECT_EQ(Content(aside_), "precious");
   EXPECT_EQ(Content(log_), before);

@@ -169,7 +169,7 @@ TEST_F(LogSealTest, OfAnotherRunSaysNothingOfThisOne) {
   others.digest = runtime::HashOf("another run");
   Write(folder_.File("others"), "");
   log::SealLog(folder_.File("others"), {}, others, nullptr);
-  // GIVEN a log of lcm-logger that contains both seals
+  // GIVEN a log of lcm-logger that contains the seal of its run and the seal of another run
   const std::string copy = folder_.File("copy");
   {
     log::EventLogReader others_reader(folder_.File("others"));

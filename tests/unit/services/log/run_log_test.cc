@@ -174,7 +174,8 @@ TEST_F(RunLogTest, OfASignedRunHasNoMessageWithoutASignature) {
   EXPECT_THAT(run.note, HasSubstr("3 messages of other runs ignored"));
 }
 
-/// The steps of a log with gaps: the number of each step, and how many messages it has.
+/// Reads logs with gaps. `steps_` has the number of each step that was read, and how many messages
+/// the step has.
 class LogWithGapsTest : public testing::Test {
  protected:
   using Steps = std::vector<std::pair<std::int64_t, std::size_t>>;

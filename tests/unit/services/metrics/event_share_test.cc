@@ -10,8 +10,8 @@ namespace fogline {
 namespace {
 
 TEST(ClopperPearsonTest, MeetsTheClosedFormsAtTheEnds) {
-  // If the true share is p, n trials have no event with a probability of (1 - p)^n, and n events
-  // with a probability of p^n. At the bound, this probability is 2.5 %.
+  // If the true share is p, the probability of no event in n trials is (1 - p)^n, and the
+  // probability of n events is p^n. At the bound of the share, this probability is 2.5 %.
   const metrics::EventShare none = metrics::ClopperPearson(0, 10);
   EXPECT_EQ(none.lower, 0);
   EXPECT_NEAR(none.upper, 1 - std::pow(0.025, 0.1), 1e-12);
@@ -29,7 +29,9 @@ TEST(ClopperPearsonTest, MeetsTheTables) {
 
 TEST(ClopperPearsonTest, BoundsAreWhereTheBinomialTailsAreHalfOfWhatIsLeftOut) {
   const metrics::EventShare share = metrics::ClopperPearson(1, 3);
-  // The tails are P(at least 1 of 3) at the lower bound, and P(at most 1 of 3) at the upper bound.
+  // One of three trials has an event. One tail is the probability of at least 1 event in 3 trials
+  // if the true share is the lower bound. The other tail is the probability of at most 1 event if
+  // the true share is the upper bound. Each tail must be 2.5 %.
   const double lower_tail = 1 - std::pow(1 - share.lower, 3);
   const double q = 1 - share.upper;
   const double upper_tail = q * q * q + 3 * share.upper * q * q;

@@ -52,7 +52,8 @@ TEST(FollowerMetricsTest, HaveTheTimeToCollisionWithTheCarBefore) {
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "no car closes in";
-  // WHEN the first car approaches the host at 5 m/s, and the second car the first car at 2 m/s
+  // WHEN the first car approaches the host at 5 m/s, and the second car approaches the first car
+  // at 2 m/s
   truth.follower_speed_mps = {25, 27};
   accumulator.Add(truth, SafeDistances(0, 0));
   // THEN the TTC is 6 s over the first gap of 30 m, and 10 s over the second gap of 20 m

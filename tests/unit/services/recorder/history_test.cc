@@ -58,7 +58,7 @@ class HistoryTest : public testing::Test {
     WriteFront(log);
     for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
   }
-  /// What a reader finds in the log from its end. ReadFromFront() reads the log from front to back,
+  /// The result of reading the log from its end. ReadFromFront() reads the log from front to back,
   /// for comparison.
   log::Remains ReadFromEnd(std::int64_t tail = log::kTailBytes) const {
     return log::ReadRemains(file_, log::ReadFront(file_), {}, tail);
@@ -95,7 +95,8 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
   Write(kSteps);
   EXPECT_TRUE(ReadFromEnd(kTail).final);
   EXPECT_EQ(ReadFromEnd(kTail).steps, kSteps);
-  // The file is cut every 37 bytes. So each of the last 40 events is cut at several places.
+  // The test shortens the file by 37 bytes at a time. So it cuts each of the last 40 events at
+  // several positions.
   for (auto size = static_cast<std::int64_t>(std::filesystem::file_size(file_)); size > 60'000;
        size -= 37) {
     std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(size));

@@ -121,8 +121,8 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   truths_.clear();
   script_.AskFor("TRUTH", 10, 63);
   AnswerAll(*recorder);
-  // The request is for steps 10 to 72. The recorder answers only up to step 67, because newer steps
-  // are less than kMaxAhead steps old.
+  // The request is for steps 10 to 72, and the run is at step 99. The recorder answers only for
+  // steps that are at least kMaxAhead = 32 steps old, so step 67 is the last one.
   ASSERT_EQ(truths_.size(), 58U);
   for (std::size_t i = 0; i < truths_.size(); ++i) {
     EXPECT_EQ(truths_[i].header.step, static_cast<std::int64_t>(10 + i));
@@ -209,7 +209,7 @@ TEST_F(RecorderTest, SaysWhenStepsAreGoneThatItHadAcknowledged) {
 }
 
 TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
-  // GIVEN a log of 30 MB that does not end like a log of a recorder
+  // GIVEN a log of 30 MB with zeros at its end, so that the recorder must read the whole log
   constexpr std::int64_t kMany = 20'000;
   const std::string file = folder_.File("long");
   {
@@ -318,7 +318,8 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
   const std::filesystem::path file = folder_.File("log");
   EXPECT_EQ(log::ReadRemains(file, log::ReadFront(file)).steps, acknowledged.header.step + 1);
-  // WHEN the recorder leaves in an incomplete step, THEN its last STATUS covers this step, too
+  // WHEN the recorder leaves during an incomplete step, THEN its last STATUS counts the bytes of
+  // this step, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);
   recorder->node().parts().own.Leave();

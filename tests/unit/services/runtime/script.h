@@ -67,7 +67,7 @@ class Script {
     }
   }
 
-  /// Makes the runner's message say that the driver is started elsewhere.
+  /// Adds to a message of the runner that the driver is started elsewhere.
   /// @param holder instance of the process that is the driver of the run, 0 if the run waits for a
   /// driver
   static run_t WithDriver(run_t run, std::int64_t holder) {

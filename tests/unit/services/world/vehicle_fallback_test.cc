@@ -162,7 +162,8 @@ TEST_F(VehicleFallbackTest, ObeysADriverWhoComesDuringTheManoeuvre) {
   EXPECT_EQ(Host(kOk, &host_), 1.5);
 }
 
-// In the step in which the driver takes over, emergency braking may hide the mode RECOVERING.
+// In the step in which the driver takes over, emergency braking may replace the mode RECOVERING.
+// Then only the human's authority in the command shows that the driver has taken over.
 TEST_F(VehicleFallbackTest, ObeysADriverWhoComesInTheMomentOfEmergencyBraking) {
   for (const bool human : {false, true}) {
     world::VehicleFallback fallback(SomeScenario());

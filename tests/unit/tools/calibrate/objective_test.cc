@@ -74,7 +74,7 @@ TEST(ObjectiveTest, PassesOverNumbersThatTheTargetDoesNotHave) {
 }
 
 TEST(ObjectiveTest, CountsSeedsWithoutCompromisedSafetyAsFarFromTheTarget) {
-  // GIVEN a floor above the shortfall of every gap, so that no seed has an SI
+  // GIVEN a safety floor that is above the shortfall of every gap, so that no seed has an SI
   calibrate::CalibrationProblem problem = ShortProblem();
   problem.scenario.measures.safety_floor_m = 10;
   const calibrate::Evaluation evaluation = Evaluate(problem);
@@ -162,15 +162,16 @@ TEST(CalibrateTest, HasNothingWhenStoppedBeforeTheFirstTable) {
 }
 
 TEST(SensitivityTest, IsTheSlopeOfTheTable) {
-  // GIVEN the tables at 0.002 m (half a percent of the range) below and above 0.4 m
+  // GIVEN the tables for fog biases of 0.398 m and 0.402 m. These two values are 1 % of the range
+  // apart.
   const calibrate::CalibrationProblem problem = ShortProblem();
   const calibrate::Evaluation below = Evaluate(problem, 0.398);
   const calibrate::Evaluation above = Evaluate(problem, 0.402);
   const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
-    // THEN the change for 1 % of the range is the difference of the two tables. The two values of
-    // the field are 4e-3 m apart, and each value is rounded to 1e-6 m.
+    // THEN the reported change for 1 % of the range is the difference of the two tables. The
+    // tolerance is for the rounding of the two values to 1e-6 m: they are 4e-3 m apart.
     const double slope = *above.rows[row].si_pct.mean() - *below.rows[row].si_pct.mean();
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(*(*changes)[0][row].si_pct, slope, 1e-3 * std::abs(slope));

@@ -84,8 +84,8 @@ TEST_F(KeyPedalsTest, DropsAHeldKeyAndItsPedal) {
   now_ += std::chrono::seconds(10);  // the device is unplugged, and nothing moves the pedals
   Pass(milliseconds(500));
   EXPECT_EQ(pedals_->throttle(), 0);
-  // A key that is pressed afterwards moves its pedal only from then on. The time without the device
-  // does not count.
+  // The device is unplugged for 10 s again. A key is pressed after these 10 s. It moves its pedal
+  // only from this moment on.
   pedals_->Drop();
   now_ += std::chrono::seconds(10);
   pedals_->Hold(PedalKey::kBrake, true, now_);

@@ -16,7 +16,7 @@ using hosts::JsonLines;
 using hosts::NotUnderstood;
 using nlohmann::json;
 
-/// Two ends of a socket. The destructor closes them.
+/// A pair of connected sockets: here() and there(). The destructor closes both.
 class JsonLinesTest : public testing::Test {
  protected:
   JsonLinesTest() {
@@ -26,7 +26,7 @@ class JsonLinesTest : public testing::Test {
     close(ends_[0]);
     Close();
   }
-  /// Closes the other end.
+  /// Closes the socket there().
   void Close() {
     if (const int other = std::exchange(ends_[1], -1); other >= 0) close(other);
   }

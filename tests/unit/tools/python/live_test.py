@@ -52,8 +52,9 @@ class LiveTest(unittest.TestCase):
             live = fl.Live(f"tcpq://127.0.0.1:{port}", timeout_s=10)
             relay, _ = server.accept()
             with relay:
-                # The subscription: magic, version, kind, size of the pattern, pattern. The kernel
-                # would discard the messages if the connection ended with unread bytes.
+                # The relay reads the subscription: magic, version, kind, size of the pattern,
+                # pattern. If it ended the connection with unread bytes, the kernel would discard
+                # the messages that it sends below.
                 relay.recv(18, socket.MSG_WAITALL)
                 relay.sendall(struct.pack(">II", 0x287617FA, 0x0100))
                 for range_m in (1, 2):

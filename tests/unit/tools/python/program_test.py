@@ -54,7 +54,8 @@ class ProgramTest(unittest.TestCase):
 
     def test_progress_tells_how_much_is_done(self):
         told = []
-        # The program shows a bar after 2 s: this run takes 2.5 s.
+        # The program shows a progress bar after 2 s. This run takes 2.5 s, so it has a progress
+        # bar.
         with tempfile.TemporaryDirectory() as folder:
             fl.run(PAPER, set={"/steps": 26}, transport="memq", pace=1, log=f"{folder}/run.lcm",
                    progress=lambda done, total: told.append((done, total)))

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLimit = 10;
 
-/// Matches at a fixed time, so that no budget is refilled.
+/// Matches at a fixed time. So the budget of processor time does not fill again.
 bool Match(relay::Subscriptions& subscriptions, std::string_view channel) {
   return subscriptions.Match(channel, TimePoint{});
 }
@@ -97,7 +97,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
     std::string pattern;
     for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
     relay::Subscriptions wanted(1);
-    // The pattern has a block of its own, so a sanitizer finds a read beyond the pattern.
+    // The pattern has a block of memory of its own, so a sanitizer finds a read beyond its end.
     const std::vector<char> exact(pattern.begin(), pattern.end());
     if (!wanted.Add({exact.data(), exact.size()}).empty()) {
       ++refused;
@@ -129,21 +129,22 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN slow expressions. Boost's own limit ends none of these searches, because Boost allows
-  // more visits for long expressions
+  // GIVEN slow expressions. Boost limits the number of steps of a search. This limit ends none of
+  // these searches, because it is higher for long expressions
   relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
 }
 
-/// This expression is so slow that some tens of names like SlowName() take a tenth of a second.
-/// Boost's own limit does not end the search, because Boost allows more visits for a long
-/// expression.
+/// This expression is so slow that a few dozen names of SlowName() take a tenth of a second. Boost
+/// limits the number of steps of a search. This limit does not end the search, because it is higher
+/// for a long expression.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
-/// The number of new names, up to a thousand, until kSlow exceeds its budget.
+/// The number of new names that are matched before the budget of processor time is spent. It is a
+/// thousand at most.
 int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
   for (int i = 0; i < 1000; ++i) {
     try {
@@ -158,7 +159,7 @@ int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN more and more new names. Boost's own limit does not end the search for any single name
+  // GIVEN more and more new names. Boost's limit on the steps of a search ends no single search
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";

@@ -59,7 +59,8 @@ TEST(FromReplicatesTest, TakesThePercentiles) {
 
 TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_FALSE(study::FromReplicates(1, 2, {1, 2, 3}).has_interval());
-  // One missing value is enough, although it is not near the percentiles.
+  // A single replicate without a value is enough: there is no interval, although this replicate is
+  // not near the percentiles.
   std::vector<double> replicates(101);
   std::iota(replicates.begin(), replicates.end(), 0.0);
   EXPECT_TRUE(study::FromReplicates(9, 2, replicates).has_interval());
@@ -68,8 +69,7 @@ TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 
-// The purpose of the interval: it must contain the mean of normal values as often as its level
-// says.
+// An interval must contain the mean of normal values as often as its level says.
 TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
   constexpr std::size_t kRuns = 40;
   constexpr int kExperiments = 200;

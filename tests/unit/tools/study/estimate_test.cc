@@ -30,7 +30,8 @@ TEST(EstimateTest, OfOneValueHasNoInterval) {
   EXPECT_TRUE(std::isnan(study::EstimateOf({}).mean));
 }
 
-// The bounds of Clopper & Pearson of 0 of n at 97.5 % are 0 and 1 - 0.0125^(1/n).
+// If none of n values is 1, the bounds of Clopper & Pearson for the share of ones, at 97.5 %, are 0
+// and 1 - 0.0125^(1/n).
 TEST(EstimateTest, OfADifferenceOfSharesStaysBetweenMinusOneAndOneAndIsNotEmpty) {
   const std::vector<double> none(20, 0.0);
   const study::Estimate same = study::PairedShareDifference(none, none);
@@ -97,7 +98,8 @@ TEST(VerdictTest, IsUndecidedWhereTheIntervalHasZeroInIt) {
 }
 
 // By hand: the mean is 1, the standard error is 1/2, and Student's t has three degrees of freedom.
-// So t is 2 for the sign, and (2 - 1) / (1/2) = 2 for the margin 2. P(T > 2) is 0.069663.
+// So t is 1 / (1/2) = 2 in the test of the sign, and (2 - 1) / (1/2) = 2 in the test of equality
+// with the margin 2. P(T > 2) is 0.069663.
 TEST(PValueTest, IsThatOfStudentsT) {
   const double root = std::sqrt(1.5);  // four values with mean 1 and standard deviation 1
   const std::vector<double> values{1 - root, 1, 1, 1 + root};

@@ -62,7 +62,7 @@ void ExpectSame(const sweep::SweepRow& row, const sweep::SweepRow& expected) {
   EXPECT_EQ(row.without.slow_down_mps, expected.without.slow_down_mps);
 }
 
-/// The paper's experiment until after the fog, with one axis.
+/// A sweep of the paper's experiment over one axis. The runs end 1 s after the fog.
 sweep::SweepPlan PaperPlan(const std::string& axis, std::int64_t seeds) {
   const Scenario scenario = LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/steps=310"});
   return {scenario, {sweep::ParseAxis(axis)}, {.first = 1, .last = seeds}};

@@ -92,7 +92,7 @@ TEST(SweepPlanTest, ItsShardsAreAPartitionIntoPartsThatDifferByOneAtMost) {
 }
 
 TEST(SweepPlanTest, SplitsTheLargestSweepIntoTheMostShards) {
-  // 10^11 units times a million shards is close to the limit of 64 bits.
+  // ShardEnd() multiplies 10^11 units by a million. The product, 10^17, must not overflow.
   const sweep::SweepPlan plan(Scenario(), {}, {.first = 1, .last = 100'000'000'000});
   const sweep::Shard last = sweep::ParseShard("1000000/1000000");
   EXPECT_EQ(plan.ShardBegin(last), 99'999'900'000);

@@ -139,7 +139,8 @@ TEST(PlanFileTest, EachMistakeOfAScenarioIsNamedWithItsLineAndField) {
 TEST(PlanFileTest, AMissingFileIsNamedOnceAndTheFirstMistakeIsExplained) {
   const test::ScratchFolder folder;
   const std::string paper = (test::SourceDirectory() / "scenario/paper.json").string();
-  // "practice" comes first in the text, but is checked after "conditions".
+  // "practice" comes first in the text, but is checked after "conditions". The hint at the end of
+  // the error must belong to the first mistake in the text.
   std::ofstream(folder.File("e.json"))
       << R"({"version": 1, "practice": [{"name": "p", "scenario": ")" << paper
       << R"(", "set": ["/arbitrator/threshold=7"]}], "conditions": [)"

@@ -50,7 +50,8 @@ TEST(FollowedNetworkTest, ForgetsTheNamesThatLcmKeeps) {
     EXPECT_EQ(network.generation(), generation);
     network.ForgetNames(10'000);
     EXPECT_EQ(network.generation() != generation, lcm_receives);
-    // LCM may lose the first messages of mpudpm, while it learns the port of their channel.
+    // With mpudpm, LCM may lose the first messages, while it learns the port of their channel. So
+    // the test sends until a message is heard.
     runtime::Bus sender(network.url());
     EXPECT_TRUE(HandleUntil(network, [&] {
       sender.Publish("TEST", kBytes);

@@ -108,7 +108,7 @@ TEST(StepSequenceTest, SurvivesTheLargestSteps) {
 }
 
 TEST(StepSequenceTest, TakesOldStepsForCopiesWhileTheRunGoesOn) {
-  // The recorder repeats these steps for a role that was restarted.
+  // Steps 0 to 100 come twice, because the recorder sends them again for a role that was restarted.
   watch::StepSequence sequence;
   AddRange(sequence, 0, 300);
   AddRange(sequence, 0, 100);

@@ -76,7 +76,7 @@ TEST(MessageRingTest, KeepsNoMoreThan64MiB) {
 
 TEST(MessageRingTest, ForgetsMessagesOfMoreThanAMinute) {
   MessageRing ring;
-  // 1000 messages of 1000 bytes a minute, for three minutes
+  // 1000 messages of 1000 bytes a minute, for three minutes. The ring keeps about the last minute.
   for (std::uint32_t i = 0; i < 3000; ++i) {
     ring.Add({.channel = 1, .wall_ms = 60.0 * i, .bytes = Numbered(i, 1000)});
   }

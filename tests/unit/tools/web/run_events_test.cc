@@ -33,7 +33,7 @@ TEST(RunEventsTest, DoNotBeginWithWhatBeganBeforeTheyWereJoined) {
     events.Add(truth);
     events.Add(command, std::nullopt);
     EXPECT_EQ(events.events().size(), first == 0 ? 3U : 0U);
-    // The end of the fog is an event in both cases.
+    // The end of the fog is an event, no matter whether the first message was of step 0 or 300.
     truth_t clear = truth;
     clear.fog_present = 0;
     clear.header.step = first + 1;
@@ -114,7 +114,8 @@ TEST(RunEventsTest, TellAnInputFromARequestAndAManoeuvre) {
   ASSERT_FALSE(events.events().empty());
   EXPECT_EQ(events.events().back().kind, "input");
   EXPECT_EQ(events.events().back().text, "first effective input of the human");
-  // Emergency braking hides the modes before a manoeuvre in a run that is joined late.
+  // The first message is of step 300, and shows emergency braking. So it is not known who drove
+  // before the manoeuvre, and the events contain no input of the human.
   RunEvents late;
   command.header.step = 300;
   command.mode = arbitration_t::EMERGENCY_BRAKING;

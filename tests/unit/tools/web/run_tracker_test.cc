@@ -145,7 +145,8 @@ TEST(RunTrackerTest, NamesAPersonInTheEventsOfARunThatAPersonDrives) {
   person.Truth(0, false, kBegin);  // it is played again
   EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
   person.Part(0, kBegin, run_t::STOP);
-  // The scenario comes after the events, which are then told with the words for a person.
+  // The scenario comes after the events. Then the tracker reports the events again, and names the
+  // person in them.
   Speaker late(tracker, 7, person.text() + std::string(2500, ' '));  // several parts
   late.Part(0, kBegin);
   EXPECT_EQ(stop(late, 7), "manoeuvre begins: inputs have failed");
@@ -168,12 +169,14 @@ TEST(RunTrackerTest, BeginsAgainWhenARunIsPlayedAgain) {
   EXPECT_TRUE(tracker.events().empty());
   run.Truth(40, true, kBegin);
   EXPECT_EQ(tracker.events().size(), 1U);
-  // A log that was not played to its end is played again after a pause.
+  // After a pause, step 0 means that the log is played again, although it was not played to its
+  // end.
   run.Truth(0, false, kBegin + 2 * RunTracker::kSilent);
   EXPECT_TRUE(tracker.events().empty());
 }
 
-// A role that was started again asks for all steps from the first one on.
+// A role that was started again asks for all steps from the first one on. So the tracker receives
+// old steps, although the run is not played again.
 TEST(RunTrackerTest, DoesNotTakeARepairForARunThatIsPlayedAgain) {
   RunTracker tracker;
   Speaker run(tracker, 5);
@@ -181,7 +184,8 @@ TEST(RunTrackerTest, DoesNotTakeARepairForARunThatIsPlayedAgain) {
   run.Truth(0, false, kBegin);
   run.Truth(40, true, kBegin);
   run.Truth(2000, true, kBegin);
-  // The run stands still until the role has come, and its other processes say that they are alive.
+  // The run stands still until the role has come. The other processes of the run send STATUS, so
+  // the run is not silent.
   TimePoint now = kBegin;
   for (int i = 0; i < 20; ++i) {
     now += milliseconds(200);

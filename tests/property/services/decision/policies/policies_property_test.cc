@@ -284,8 +284,8 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
         if (before != 0 && debouncer.evidence() == 0) break;  // decided for the automation
       }
     }
-    // Wald's bound for this share is alpha/(1 - beta); here beta = alpha. The tolerance is four
-    // standard deviations of the count.
+    // Wald's bound for the share of wrong decisions is alpha/(1 - beta); here beta = alpha. The
+    // tolerance is four standard deviations of the count.
     const double bound = alpha / (1 - alpha);
     EXPECT_LE(errors, kTests * bound + 4 * std::sqrt(kTests * bound)) << alpha;
     EXPECT_GT(errors, 0) << alpha;

@@ -88,7 +88,8 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
 }
 
 // The model `sumo` draws again if a take-over time is negative. For a lead time of 20 s, 15 % of
-// the draws are negative.
+// the draws are negative. So with this model more drivers are late than `late_probability` says,
+// and the test compares with LateProbability().
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};

@@ -1,5 +1,6 @@
-// The state machine of take-overs under random sequences of events. The tests compare its states
-// with its table, and its commands and its log with an independent computation.
+// The state machine of take-overs under random sequences of events. The tests compare the states of
+// the machine with the table of its transitions (take_over_table.h). They compare its commands and
+// its log with an independent computation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +23,8 @@ using enum take_over::TakeOverState;
 constexpr std::int64_t kSequences = 10'000;
 constexpr std::int64_t kSteps = 300;
 
-/// How often the state machine took a row of the table, and how often the row changed the command.
+/// How often the state machine made the transition of a row of the table, and how often this
+/// transition changed the command.
 struct RowCount {
   int taken = 0;
   int changed = 0;
@@ -83,7 +85,7 @@ void ExpectNoManoeuvreTooEarly(const take_over::TakeOverRow& row, const Witness&
 void ExpectTheLimits(const take_over::TakeOverOutcome& out, const take_over::TakeOverInputs& inputs,
                      const TakeOverSection& section, double step_s) {
   if (out.authority == take_over::Authority::kEasing) {
-    // Easing commands a positive acceleration only while the jerk limit requires it.
+    // With authority kEasing, the command is positive only while the jerk limit requires it.
     EXPECT_LE(out.acceleration_mps2,
               std::max(0.0, inputs.applied_mps2 - section.jerk_mps3 * step_s) + kTolerance);
   }
@@ -152,8 +154,8 @@ class Sequence {
 
   /// Draws other offers until the controllers of the old and of the new state want different
   /// commands. With equal commands the change of state would have no effect. The function gives up
-  /// after 30 draws: with any offers, both stages of the manoeuvre may want the acceleration that
-  /// the jerk limit allows.
+  /// after 30 draws, because the jerk limit may force both stages of the manoeuvre to the same
+  /// acceleration, whatever the offers are.
   void LetTheControllersDiffer(const take_over::TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
     const take_over::Authority old_authority = take_over::AuthorityOf(row.state);

@@ -93,7 +93,8 @@ class Events {
   }
 
   /// Draws new offers of the automation and of a simulated driver. These offers do not influence
-  /// the events. A person's offer may be an override, so it is not drawn again.
+  /// the events. The offer of a person is not drawn again, because it may be an override, which is
+  /// an event.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
@@ -166,8 +167,9 @@ class Witness {
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    // A person may still answer in the step of the deadline. A drawn take-over time is compared
-    // with lead_s itself.
+    // The time of a person's answer is a whole number of steps. An answer in the step of the
+    // deadline is still in time. The drawn take-over time of the driver model need not be a whole
+    // number of steps. So this time is compared with lead_s itself.
     const double answer_s = answers_now ? t : time_s_;
     const bool in_time = person_.drives ? answer_s < section_.lead_s + step_s_ - kTolerance
                                         : answer_s <= section_.lead_s;

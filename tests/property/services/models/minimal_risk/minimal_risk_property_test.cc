@@ -43,7 +43,7 @@ double LongestTimeToRest(const Case& c) {
          (c.speed_mps + push * push / (2 * j) + push * c.step_s) / d + d / j + 3 * c.step_s;
 }
 
-// The rounding of sums over a few thousand steps.
+// Tolerance for the rounding of sums over many steps.
 constexpr double kRounding = 1e-9;
 
 struct Drive {

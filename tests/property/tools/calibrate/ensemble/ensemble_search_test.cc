@@ -22,8 +22,8 @@ using Shares = std::vector<double>;
 constexpr double kRadius = 0.02;
 constexpr double kApart = 0.3;
 
-/// Four minima, as shares of the ranges of three fields. The function for the fresh seeds does not
-/// have the last minimum.
+/// Four minima, as shares of the ranges of three fields. The function that stands for the fresh
+/// seeds has only the first three. So the search must reject the last minimum.
 const std::array<Shares, 4> kMinima{
     {{0.2, 0.2, 0.8}, {0.8, 0.7, 0.2}, {0.25, 0.8, 0.3}, {0.75, 0.2, 0.5}}};
 

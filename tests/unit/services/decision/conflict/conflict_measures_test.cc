@@ -140,7 +140,7 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
-      // This measure alone treats a missing value as evidence, under every rule for missing values.
+      // This measure alone treats a missing value as evidence, whatever the parameter `missing` is.
       const auto measure = row.make({});
       measure->Step(LidarShortBy(0));
       EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);
@@ -162,8 +162,9 @@ TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
     const double before = measure->Step(LidarShortBy(0));
     double after = before;
     for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
-    // The rise may be as small as 0.1: on consonant beliefs, Jousselme's distance is at most 0.8,
-    // and unequal precision of the sensors alone already gives 0.7.
+    // The demanded rise is only 0.1, because the score of `jousselme_consonant` cannot rise much
+    // more. This score is at most 0.8, and unequal precision of the sensors alone already makes it
+    // 0.7.
     EXPECT_GT(after, before + 0.1);
   }
 }

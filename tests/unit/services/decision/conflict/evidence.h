@@ -7,7 +7,7 @@
 
 namespace fogline {
 
-// The standard deviations in the worked examples: radar, LiDAR.
+// The standard deviations of the radar and the LiDAR, if a test does not choose others.
 inline constexpr double kRadarStd_m = 0.4;
 inline constexpr double kLidarStd_m = 0.05;
 
@@ -16,8 +16,8 @@ inline conflict::Disagreement Differing(double difference_m, double radar_std_m 
   return {difference_m, radar_std_m, lidar_std_m};
 }
 
-// The radar and the prediction are at 0 m, where differences are exact. The LiDAR's range is too
-// short by `short_m`.
+// The LiDAR's range is too short by `short_m`. The radar and the prediction are at 0 m, so the
+// difference radar - LiDAR is exactly `short_m`, without rounding.
 inline conflict::Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
                                        double lidar_std_m = kLidarStd_m) {
   return {.radar = {true, 0, radar_std_m},

@@ -110,7 +110,8 @@ TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   }
 }
 
-// For a policy with a simple rule, the arbitrator applies the rule without a call of the policy.
+// For a policy with a simple rule (not Rule::kOwn), the arbitrator applies the rule itself. It does
+// not call the policy. So the rule and the policy must decide the same.
 TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
   int simple = 0;
   for (const policies::PolicyRow& row : policies::Policies()) {

@@ -28,7 +28,8 @@ inline arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_h
   return command;
 }
 
-/// Adds the command of a side that drives alone. The offer of this side equals the command.
+/// Adds a command of the automation alone, or of the human alone. The acceleration that the human
+/// offers equals the command.
 inline void Add(take_over::TakeOverLog& log, const arbitration_t& command) {
   log.Add(command, command.acceleration_mps2);
 }

@@ -142,7 +142,8 @@ TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithou
   EXPECT_THAT(Transfers(log), IsEmpty());
   EXPECT_THAT(log.requests(),
               ElementsAre(take_over::TakeOverRequest{.requested = 0, .acknowledged = 1}));
-  // The human has a tenth of the authority, so a tenth of the offer's change counts.
+  // The human has a tenth of the authority. So the offer of 0.11 m/s2 changes the command by
+  // 0.011 m/s2. This is above kEffectiveInput_mps2, so the input is effective.
   log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
   EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{
                                   .requested = 0, .acknowledged = 1, .effective = 5}));

@@ -14,7 +14,8 @@ using Change = std::pair<take_over::TakeOverState, take_over::TakeOverState>;
 
 constexpr unsigned kEventSets = 1U << 12;
 
-// A second list of the allowed changes of state, without their events.
+// The allowed changes of state, without their events. The test compares the table with this second,
+// independent list.
 const std::set<Change> kChanges{
     {kAutomated, kDemand},        {kDemand, kUrgentDemand},       {kDemand, kHandover},
     {kDemand, kMrmComfort},       {kDemand, kMrmEmergency},       {kUrgentDemand, kHandover},

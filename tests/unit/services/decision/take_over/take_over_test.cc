@@ -19,8 +19,8 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
 
-// A TakeOverRequest also has the time of the first effective input. TakeOverLog determines this
-// time.
+// This test does not check the time of the first effective input, because TakeOverLog determines
+// this time.
 TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   Begin(Answering(2.05));
   inputs_.human_wanted = false;

@@ -1,4 +1,5 @@
-// A log names the channels of its steps, and readers demand these channels.
+// A log names the channels of its steps (log_graph_t). A step of the log is complete if it has a
+// message of each of these channels.
 #include "services/log/about/log_graph.h"
 
 #include <gmock/gmock.h>

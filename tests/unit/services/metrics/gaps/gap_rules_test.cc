@@ -25,7 +25,8 @@ Lack LackingEvery(std::size_t channel) {
   return lack;
 }
 
-/// The measures of a run that are unknown. @param has_value whether each measure has a value
+/// The names of the measures that are unknown if a log lacks the messages that `lack` names.
+/// @param has_value whether each measure has a value
 std::set<std::string> Unknown(const Lack& lack, bool has_value = true) {
   std::set<std::string> names;
   VisitMetrics({}, [&](std::string_view name, const auto&, std::string_view, std::string_view) {

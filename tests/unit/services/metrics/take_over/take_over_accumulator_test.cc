@@ -101,7 +101,8 @@ TEST(TakeOverAccumulatorTest, MeasuresTheTimesFromTheRequest) {
 }
 
 TEST(TakeOverAccumulatorTest, JudgesTheMotionFromTheRequestToTheRecovery) {
-  // All values before the request and after the recovery are worse. These values do not count.
+  // The values before the request and after the recovery are worse than all others. The measures
+  // must not contain these values.
   const auto requests = Measured(
       {{},
        {.gap_m = 1, .lead_mps = 0},
@@ -299,7 +300,8 @@ TEST(TakeOverAccumulatorTest, ALogThatIsCutOffLeavesTheEndOfItsLastRequestOpen) 
   EXPECT_EQ(cut({A::REQUEST, A::MINIMAL_RISK}).outcome, TakeOverEnd::kMinimalRisk) << "it lasts";
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).outcome, TakeOverEnd::kTakenOver);
   EXPECT_EQ(cut({A::REQUEST, A::AUTOMATION}).outcome, TakeOverEnd::kWithdrawn);
-  // The judged interval goes on until the driver has recovered. So its measures are unknown.
+  // The judged interval ends when the driver has recovered, which is after the end of the log. So
+  // the measures of this interval are unknown.
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).judged_s, std::nullopt);
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).driver_drove_s, std::nullopt);
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).reaction_time_s, 0.5);

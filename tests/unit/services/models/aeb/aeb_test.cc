@@ -115,8 +115,8 @@ struct Approach {
   double warned_s = 0;    // time of warnings before the braking
 };
 
-// With this distance, no step has a time to collision that equals a limit exactly. At an exact
-// limit, rounding would decide.
+// The time to collision at the beginning of an approach. With this value, no step has a time to
+// collision that equals a limit exactly. At an exact limit, rounding would decide.
 constexpr double kFarAway_s = 6.05;
 
 /// An approach at this relative speed, in which the driver does not brake.

@@ -91,6 +91,8 @@ TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
   const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);
   // With s = 8 m, z is 4, the IIDM is at its limit of -9 m/s2, and a_CAH = -1600 / 464 = -3.448.
+  // The IIDM is below a_CAH. So the result is 1 % of the IIDM plus 99 % of the value `cool` (the
+  // model has a coolness of 0.99).
   const double heuristic = -1600.0 / 464;
   const double b = driver.comfortable_deceleration_mps2;
   const double cool = heuristic + b * std::tanh((-9 - heuristic) / b);

@@ -103,8 +103,8 @@ TEST(HumanDriverTest, TheNearerOfTwoStepsDecidesWhetherThereIsACar) {
   }
 }
 
-// A driver who thinks that the gap is half as long, and a driver who thinks that it is twice as
-// long, make equal errors of opposite sign. No error makes a gap negative.
+// The gap that the driver sees is the true gap times exp(error). So half the gap and twice the gap
+// are equal errors of opposite sign, and no error makes a gap negative.
 TEST(HumanDriverTest, ErrsByAFactorOfTheGap) {
   HumanParameters human = kPerfect;
   human.gap_error = 3;

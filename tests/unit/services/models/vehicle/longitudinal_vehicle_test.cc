@@ -164,8 +164,9 @@ TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
   drive.For(0.4, -4);
   const double before = drive.For(0.1, -4);  // mean from 0.6 to 0.7 s
   const double after = drive.For(0.1, -4);   // mean from 0.7 to 0.8 s
-  // 0.7 s is delay plus time constant, so 63.2 % of the braking has its effect. The average of both
-  // means is centred on 0.7 s. The tolerance covers the curvature of the force over these 0.2 s.
+  // 0.7 s is the delay plus the time constant. At this time, the brakes have reached 63.2 % of the
+  // commanded deceleration. The average of `before` and `after` is the mean from 0.6 s to 0.8 s,
+  // with 0.7 s in the middle. The tolerance covers the curvature of the force over these 0.2 s.
   EXPECT_NEAR(0.5 * (before + after), -4 * (1 - std::exp(-1)), 4 * 0.004);
 }
 

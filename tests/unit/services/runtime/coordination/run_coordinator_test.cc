@@ -181,8 +181,9 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
   EXPECT_GE(coordinator_.TakeLongestPause(), milliseconds(4900));
   EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
-  // The silence of the roles after the runner's pause counts. The time limit is 4 s. A pause of the
-  // test before the first Poll() counts, too, if it is shorter than 500 ms.
+  // The roles are silent after the runner's pause, too. This silence counts, and the time limit is
+  // 4 s. The test itself may have stood still before the first Poll(). A standstill of less than
+  // 500 ms is not a pause and counts as silence. So the run may fail up to 500 ms earlier.
   TimePoint now = again;
   for (; now < again + milliseconds(3400); now += milliseconds(20)) coordinator_.Poll(now);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();

@@ -42,7 +42,8 @@ TEST_F(SignsOfLifeTest, WhereNoProcessIsHeardNoneHangs) {
 
 TEST_F(SignsOfLifeTest, AProcessThatFellSilentWithAllOthersMayLive) {
   signs_.Heard(Role::kFusion, 0, At(0));
-  // GIVEN other roles whose signs still arrived for a moment before the network lost everything
+  // GIVEN a sign of life of each role; that of fusion arrives first. Then the network loses all
+  // messages. THEN the silence of fusion does not show that fusion hangs
   Speak(Role::kFusion, 10, 200);
   EXPECT_GT(Chance(Role::kFusion, 1000), 0.1);
   EXPECT_GT(Chance(Role::kFusion, 3000), 0.1);

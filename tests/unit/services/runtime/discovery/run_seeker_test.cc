@@ -49,10 +49,10 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
-// The test passes times in steps of 0.4 s. The seeker would regard a longer step as a pause of its
-// own process.
+// The test gives the seeker times in steps of 0.4 s. The seeker would regard a longer step as a
+// pause of its own process.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
-  // GIVEN a seeker that has tried a run in vain
+  // GIVEN a seeker that has tried a run without success
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
   EXPECT_FALSE(driver_.Tries());
@@ -67,7 +67,7 @@ TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
 }
 
 TEST_F(RunSeekerTest, TriesARunAgainAtOnceWhenItsPlaceWasTakenAndLeft) {
-  // GIVEN a seeker that has tried a run in vain at `begin_`
+  // GIVEN a seeker that has tried a run without success at `begin_`
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
   // WHEN the run waits only for another role, and then for the driver again

@@ -46,11 +46,11 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
   constexpr std::int64_t kProgress = 200;
   script_.SayRun(run_t::GO, kProgress);
   script_.Poll(node_);
-  // GIVEN a node that requests, with one message, all steps for which its ring has room
+  // GIVEN a node that requests, with one message, all steps for which its ring buffer has room
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, runtime::kRingSteps - 1);
-  // WHEN the node gets these steps, and all steps that it requests next
+  // WHEN the node gets the requested steps, and all steps that it requests next
   AnswerRequests();
   // THEN the node reaches the step of the other roles, and has requested each step once
   script_.Say(Truth(kProgress + 1));
@@ -61,7 +61,7 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
     next += request.count;
   }
   EXPECT_EQ(next, kProgress + 1);
-  // AND the node publishes only the steps for which the recorder does not answer
+  // AND the node publishes only its newest outputs, because the recorder has the older outputs
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.front().header.step, kProgress - runtime::kRingSteps + 1);
   EXPECT_EQ(commands_.back().header.step, kProgress + 1);

@@ -54,7 +54,8 @@ TEST_F(StepGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
   Recorded(6);
   EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
   EXPECT_EQ(own_.out_of_window, 1);
-  // The gate accepts the recorder's report if an earlier process of the world has begun this step.
+  // The gate accepts the recorder's report of step 6 if the runner says that the run has reached
+  // step 6. An earlier process of the world has then begun this step.
   Go(0, 6);
   Recorded(6);
   EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 6, now_));

@@ -1,5 +1,5 @@
-// A role whose algorithm and rule only count or list their calls. The test publishes the messages
-// of all other processes (script.h).
+// A role whose algorithm and FireRule only count or list the calls of their functions. The test
+// publishes the messages of all other processes (script.h).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ class FakeRole final : public runtime::Work {
  public:
   static constexpr const char* kWaitingFor = "the test";
 
-  /// A rule that accepts each message of a step that the ring does not have. It classifies any
-  /// other message as the ring does. A test can set another verdict.
+  /// A FireRule that accepts a message if the input has no message of its step yet. Otherwise the
+  /// verdict is that of StepRing::Classify(). A test can set another verdict.
   class Rule final : public runtime::FireRule {
    public:
     explicit Rule(runtime::Parts& parts) : parts_(parts) {}

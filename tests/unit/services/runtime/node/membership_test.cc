@@ -324,7 +324,8 @@ TEST_F(ExternalRoleTest, HoldsItsOwnPauseAgainstNoRunner) {
 }
 
 TEST_F(ExternalRoleTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
-  // GIVEN a process that the kernel ends when its parent ends, as the runner starts its processes
+  // GIVEN a process that the kernel ends when its parent ends. The runner starts its processes in
+  // this way.
   int before = 0;
   ASSERT_EQ(prctl(PR_GET_PDEATHSIG, &before), 0);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, SIGKILL), 0);

@@ -142,7 +142,7 @@ TEST_F(OutputsOfADriverTest, AnswersAFloodOfRequestsWithAFewMessages) {
 TEST_F(OutputsOfADriverTest, AnswersForTheNewestStepsInAFloodOfRequestsForOldOnes) {
   script_.SayRun(run_t::GO, -1);
   for (std::int64_t k = 0; k < runtime::kRingSteps; ++k) script_.Say(Truth(k));
-  // GIVEN a node that has used up its burst of answers
+  // GIVEN a node whose rate limit permits no further answers with old steps for the moment
   const TimePoint until = Clock::now() + milliseconds(20);
   while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, runtime::kRingSteps - 3);
   commands_.clear();

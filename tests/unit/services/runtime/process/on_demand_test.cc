@@ -1,5 +1,6 @@
-// Inputs that only some scenarios demand. The example is a driver that reads HOST_COMMAND. In each
-// step, the driver publishes DRIVER_COMMAND before HOST_COMMAND is published.
+// Inputs on demand: inputs that a role reads only in some scenarios. The example is a driver that
+// reads HOST_COMMAND. In each step, HOST_COMMAND is published after the driver's DRIVER_COMMAND. So
+// the driver uses the HOST_COMMAND of the previous step.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ using testing::ElementsAre;
 using testing::Not;
 
 /// In each step this driver's offer is the acceleration of the last HOST_COMMAND. The driver's
-/// readiness is the number of HOST_COMMAND messages so far.
+/// readiness is the number of calls of SetOnDemandInput() so far.
 class Echo {
  public:
   explicit Echo(const Scenario& /*scenario*/) { out_.acceleration_mps2 = kNothing; }
@@ -167,7 +168,7 @@ TEST_F(OnDemandTest, OfTwoProducersEndsTheRun) {
             "arbitrator?");
 }
 
-// ---- a scenario that does not demand HOST_COMMAND ----------------------------------------------
+// ---- a scenario in which the driver does not read HOST_COMMAND ---------------------------------
 
 class NotOnDemandTest : public OnDemandTest {
  protected:

@@ -96,7 +96,7 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
   EXPECT_EQ(Add(next), "");
   Add(Said("acc", 13, {{"TRACK", kLost}}));
   EXPECT_EQ(log_.all().back().culprit, "fusion");
-  // The return of the input is still reported.
+  // When the new process receives RADAR again, the log reports this.
   next.input_state = {kOk};
   EXPECT_EQ(Add(next), "step 13: fusion: RADAR ok again");
 }

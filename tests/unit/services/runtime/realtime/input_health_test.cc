@@ -43,7 +43,7 @@ TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
 TEST(InputHealthTest, FindsASilentInputWithinThreePeriods) {
   runtime::InputHealth health = Running(10);
   EXPECT_EQ(health.Update(At(900 + 300)), InputState::kLost);
-  // The scenario's defaults have the same effect.
+  // With the default limits of a scenario, a silent input is also lost within three periods.
   runtime::InputHealth by_default(HealthSection(), kPeriod, kBegan);
   by_default.Arrived(0, At(0));
   EXPECT_EQ(by_default.Update(At(300)), InputState::kLost);

@@ -19,8 +19,8 @@ using test::Script;
 
 constexpr double kFastSpeed = 10;
 constexpr Duration kFastPeriod = milliseconds(10);
-// This time is much longer than any wait in these tests, even on a busy machine. In this time the
-// run advances by 30 s.
+// This time is much longer than any wait in these tests, even on a busy machine. The run is ten
+// times as fast as the clock, so it advances by 30 s in this time.
 constexpr Duration kPatience = milliseconds(3000);
 
 class RealtimeHorizonTest : public testing::Test {
@@ -108,7 +108,8 @@ TEST_F(RealtimeHorizonTest, NorIsItTakenByARoleThatHasHeardNothingForLong) {
   Join(200);
   ASSERT_TRUE(IsComputed());
   Pass(20);
-  // This step is more than a second ahead of the progress that the runner last reported.
+  // This step is refused, because it is more than a second ahead of the progress that the runner
+  // last reported.
   Say(Now() + 1000);
   EXPECT_EQ(Refused(), 3);
   EXPECT_TRUE(IsComputed());
@@ -120,8 +121,9 @@ TEST_F(RealtimeHorizonTest,
   ASSERT_TRUE(IsComputed());
   // WHEN forged messages claim steps further and further ahead
   for (std::int64_t ahead = 1; ahead < 2000; ++ahead) Say(Now() + ahead);
-  // THEN genuine steps are computed again as soon as the progress that the runner reports is high
-  // enough
+  // THEN genuine steps are late at first, because the fusion has computed forged steps. The fusion
+  // refuses steps that are more than about a second ahead. So after about a second, it goes on with
+  // genuine steps
   const TimePoint end = Clock::now() + kPatience;
   bool computed = false;
   for (std::int64_t step = Now(); !computed && Clock::now() < end; step = Now()) {

@@ -257,8 +257,8 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   // GIVEN a world that wakes just before tick 3, when no role has answered yet
   script_.Poll(node_, At(2.98));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the other roles answer THEN the next step begins immediately. Tick 3 begins no step,
-  // because tick 3 comes too soon after this step.
+  // WHEN the other roles answer THEN step 1 begins immediately. Tick 3 begins no step, because it
+  // comes too soon after the beginning of step 1.
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.99));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
@@ -322,7 +322,7 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
     const auto radar = std::ranges::find(status.input, ChannelOf<radar_t>().name);
     return status.input_late.at(static_cast<std::size_t>(radar - status.input.begin()));
   };
-  // GIVEN a missing message that comes after the next step
+  // GIVEN a RADAR message of step 0 that comes only after all messages of step 1
   const auto say_all_but_radar = [this](std::int64_t step) {
     ForEachStepChannel([&]<class M>(std::size_t) {
       if constexpr (!std::is_same_v<M, radar_t>) Say<M>(step);
@@ -335,12 +335,13 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
   Say<radar_t>(0);
   script_.PollUpTo(recorder_);
   EXPECT_EQ(late(), 0) << "it is in the log";
-  // WHEN this message comes again with other contents
+  // WHEN the RADAR message of step 0 comes again, with other contents
   auto other = Script::Of<radar_t>(0);
   other.range_m = 17;
   script_.Say(other);
   EXPECT_EQ(late(), 0) << "the one of the log is there";
-  // WHEN a message comes twice after the recorder has given up the message's step
+  // WHEN the recorder no longer waits for the RADAR message of step 2, and this message then comes
+  // twice
   say_all_but_radar(2);
   say_all_but_radar(3);
   Say<radar_t>(3);

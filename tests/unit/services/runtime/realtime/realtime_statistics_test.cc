@@ -66,8 +66,8 @@ TEST(RealtimeStatisticsTest, ReplacesTheInputs) {
   EXPECT_EQ(status.input_late, std::vector<std::int64_t>{1});
 }
 
-// The recorder is the role with the most inputs. In this test the texts of STATUS have their
-// greatest lengths.
+// The recorder is the role with the most inputs, so its STATUS is the longest. In this test the
+// texts of the STATUS have their greatest lengths.
 TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   const runtime::InputHealth health(HealthSection(), milliseconds(100), kDue);
   status_t status{};

@@ -1,4 +1,5 @@
-// The common part of the rules in real time: messages, inputs, and steps that are due.
+// RealtimeWatch, the common part of the rules by which roles compute in real time: messages,
+// inputs, and steps that are due.
 #include "services/runtime/realtime/realtime_watch.h"
 
 #include <gmock/gmock-more-matchers.h>

@@ -14,7 +14,8 @@ inline constexpr TimePoint kBegan{std::chrono::hours(5)};
 /// The time `ms` after kBegan.
 inline TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
-// A speed at which a period lasts a second, so that the duration of a test does not matter.
+// A speed at which a period lasts a second. A test takes much less time, so its duration does not
+// matter.
 inline constexpr double kSlowSpeed = 0.1;
 inline constexpr Duration kSlowPeriod = milliseconds(1000);
 

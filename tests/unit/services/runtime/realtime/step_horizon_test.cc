@@ -47,8 +47,8 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // The interval between two steps is 11 ms longer than the period. The total delay is less than a
-  // period.
+  // Each interval between two messages is 11 ms longer than the period. So the last of the nine
+  // messages is 88 ms late. The horizon still counts from step 0, the only step without delay.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }
@@ -57,8 +57,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // The horizon does not forget step 40 immediately, because all other messages might be late. In
-  // this case step 40 would be the only step in time.
+  // Perhaps step 40 is the only step in time, and all other messages are late. So the horizon does
+  // not forget step 40 immediately.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
   Hear(10 + kRemembered, kRemembered + 20, 5);
@@ -86,7 +86,7 @@ constexpr Duration kLong = 10 * kPeriod;  // after such a silence only the runne
 TEST(RunHorizonTest, IsLimitedByTheRunnerUntilAStepIsHeard) {
   runtime::RunHorizon horizon(kPeriod);
   horizon.Told(50, At(5000));
-  // The report may be a second old: ten periods.
+  // The report may be a second old, which is ten periods. So the run may be ten steps further.
   EXPECT_EQ(horizon.NewestPossible(At(5000), Duration::zero()), 50 + 10 + kSlack);
   EXPECT_EQ(horizon.newest(), -1);
 }

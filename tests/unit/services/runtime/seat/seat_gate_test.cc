@@ -41,7 +41,8 @@ TEST_F(SeatGateTest, HasTheNewestInputOfItsSeat) {
   EXPECT_EQ(Newest(), 5);
 }
 
-// A process without the key of the run can only repeat messages.
+// A process without the key of the run can only repeat messages. A repeated message of an earlier
+// seat must not count as an input.
 TEST_F(SeatGateTest, IgnoresARepetitionOfASeatThatHadTheDriverBefore) {
   gate_.Take(Input(1, 3), now_);
   gate_.Take(Input(1, 4, false), now_);

@@ -104,7 +104,7 @@ TEST(BusTest, ReceivesWithoutAThreadUntilItKeepsABacklog) {
   EXPECT_TRUE(bus->Wait(Duration::zero()));
   EXPECT_EQ(received.back(), 4);
   bus.reset();
-  // The kernel removes the task a moment after the thread was joined.
+  // The kernel may count a thread for a moment after it was joined, so the test waits.
   for (int i = 0; i < 1000 && Threads() > before; ++i) std::this_thread::sleep_for(milliseconds(5));
   EXPECT_EQ(Threads(), before);
 }
@@ -335,7 +335,8 @@ TEST(BusTest, ReceivesMpudpmThroughLcm) {
   bus.SubscribeAll([&heard](std::string_view channel, runtime::Bytes) {
     if (!channel.starts_with("#!mpudpm")) heard.emplace(channel);
   });
-  // LCM learns the port of a channel while it receives, and may lose the first messages.
+  // With mpudpm, LCM learns the port of a channel only while it receives. So it may lose the first
+  // messages, and the test sends them again.
   constexpr int kTries = 50;
   const std::set<std::string> all{"C", "C, subscribed", "OTHER"};
   for (int i = 0; i < kTries && heard != all; ++i) {

@@ -66,8 +66,8 @@ TEST(LcmSocketsTest, JoinNoGroupBecauseTheyOnlySend) {
       const runtime::LcmSockets sockets(reach);
       EXPECT_EQ(join(), 0);
     }
-    // Without an LcmSockets, the socket joins. This succeeds only because it was not a member
-    // before.
+    // Without an LcmSockets, the socket joins the group. The first call succeeds, so the socket was
+    // not a member of the group before.
     EXPECT_EQ(join(), 0);
     EXPECT_NE(join(), 0);
   }

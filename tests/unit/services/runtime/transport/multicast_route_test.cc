@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kGroup = "239.255.76.67";
 
-// A table in the kernel's format: addresses are hexadecimal numbers in memory order.
+// Lines of a routing table in the kernel's format (/proc/net/route). Addresses are hexadecimal
+// numbers in memory order.
 constexpr const char* kHeading =
     "Iface\tDestination\tGateway\tFlags\tRefCnt\tUse\tMetric\tMask\tMTU\tWindow\tIRTT\n";
 constexpr const char* kDefault = "eth0\t00000000\t010200C0\t0003\t0\t0\t0\t00000000\t0\t0\t0\n";

@@ -85,7 +85,8 @@ TEST(FindPointsTest, SearchesFromAStartToWhereTheTargetIsMet) {
 }
 
 TEST(FindPointsTest, RejectsAndCountsPointsThatFailOnFreshSeeds) {
-  // GIVEN fresh seeds that confirm only the upper half of the second field
+  // GIVEN fresh seeds with which a point meets the target only if its second field lies in the
+  // upper half of the field's range
   calibrate::Landscape landscape = Valley();
   landscape.fresh = [](const Shares& shares) { return shares[1] > 0.5 ? 0.9 : 1.1; };
   const auto found = Find(landscape, {.sets = 50, .apart = 0.02, .starts = 40});

@@ -31,8 +31,8 @@ constexpr const char* kText = R"({
 })";
 
 // The target is the table that the scenario gives with a fog bias of 0.4 m and a radar bias of
-// 0.95 m. So some values of the fields meet the target. A change of the fog's bias and a change of
-// the radar's bias can compensate each other.
+// 0.95 m. So at least these values meet the target. Other values meet it, too, because a change of
+// one bias can compensate a change of the other bias.
 calibrate::CalibrationProblem ShortProblem() {
   calibrate::CalibrationProblem problem;
   problem.scenario = ParseScenario(kText);

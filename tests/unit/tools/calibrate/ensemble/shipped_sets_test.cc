@@ -21,8 +21,8 @@ namespace fogline::test {
 namespace {
 
 constexpr std::size_t kSets = 8;
-// The seeds of the search, and the fresh seeds that confirmed the sets
-// (scenario/ensemble/README.md).
+// The seeds with which the sets of parameters were searched, and the fresh seeds that confirmed
+// these sets (scenario/ensemble/README.md).
 constexpr sweep::SeedRange kSearched{1001, 1040};
 constexpr sweep::SeedRange kFresh{2001, 2200};
 

@@ -42,8 +42,8 @@ TEST(AlarmCountTest, BoundsAreThoseOfAPoissonCount) {
 TEST(ThresholdFinderTest, IsTheLeastThatIsQuietEnough) {
   std::vector<study::ClearRun> runs;
   for (int i = 1; i <= 10; ++i) runs.push_back(RunOf({{0, 0}, {static_cast<double>(i), 50}}));
-  // With a threshold above k, up to k + 1, 10 - k runs give an alarm after 50 s, and k runs last
-  // 100 s without an alarm. ARL0, the total time divided by the number of alarms, is
+  // If the threshold is above k and at most k + 1, then 10 - k runs give an alarm after 50 s, and k
+  // runs last 100 s without an alarm. ARL0, the total time divided by the number of alarms, is
   // 50 + 100 k/(10 - k) s.
   const double threshold = study::ThresholdFinder(runs).Threshold(280);
   EXPECT_GT(threshold, 7);

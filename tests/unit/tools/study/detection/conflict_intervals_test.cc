@@ -17,7 +17,9 @@ constexpr double kArlZero_s = 400;
 constexpr double kMissed_s = 11;
 constexpr std::size_t kSeeds = 60;
 
-/// The rule of the tests, with the ranking over these visibilities.
+/// The settings with which the tests compare detectors.
+/// @param ranked indices of the visibilities whose delays are averaged
+/// @param reference detector whose delay is subtracted from each delay
 study::DetectionRule RuleOf(std::vector<std::size_t> ranked,
                             std::optional<std::size_t> reference = {}) {
   return {.arl_zero_s = kArlZero_s,
@@ -53,10 +55,11 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
   // All runs in fog are equal, so only the threshold can vary. A run in clear air lasts 50 s if it
-  // has an alarm, else 100 s. If a share q of these 60 runs has an alarm, ARL0 is (100 - 50 q)/q s.
-  // ARL0 is 400 s, so q is 2/9. The threshold is the quantile of the greatest scores that a share q
-  // of the runs exceeds. Its standard deviation is sqrt(q (1 - q)/60). The score in fog grows by
-  // 0.1 in a second, so the delay is the threshold divided by 0.1.
+  // has an alarm, else 100 s. If a share q of these 60 runs has an alarm, the mean time to a false
+  // alarm (ARL0) is (100 - 50 q)/q s. ARL0 is 400 s, so q is 2/9. The threshold is a quantile of
+  // the greatest scores: the scores of a share q of the runs exceed it. Its standard deviation is
+  // sqrt(q (1 - q)/60). The score in fog grows by 0.1 in a second, so the delay is the threshold
+  // divided by 0.1.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
   // The ends of the interval are two of the 60 scores, in order of their size. They are
   // 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places apart. A sum of this many spacings has a relative
@@ -74,7 +77,8 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
                         study::DetectorRuns{.clear = clear, .fog = fast},
                         study::DetectorRuns{.clear = clear, .fog = slow}};
   const auto compared = study::CompareDetection(runs, RuleOf({0, 1}, 0));
-  // The same measure again: both have the same threshold in every sample of the bootstrap.
+  // compared[2] is the same measure as compared[0]. Both have the same threshold in every sample of
+  // the bootstrap.
   const study::Estimate again = study::DelayDifference(compared[2], compared[0]);
   EXPECT_EQ(again.low, 0);
   EXPECT_EQ(again.high, 0);
@@ -114,7 +118,9 @@ TEST(CompareDetectionTest, DetectorsMayHaveDifferentlyManyRunsInClearAir) {
   const auto compared = study::CompareDetection(runs, RuleOf({0}));
   const study::Estimate& few = compared[0].detector.delay_s;
   const study::Estimate& many = compared[1].detector.delay_s;
-  // Each score is there twenty times, so the threshold is the same, but its interval is narrower.
+  // `more` has each run of `clear` twenty times. So both detectors have the same threshold and the
+  // same mean delay. But with more runs the threshold is more certain, so the interval of the delay
+  // is narrower.
   EXPECT_EQ(many.mean, few.mean);
   EXPECT_LT(many.high - many.low, (few.high - few.low) / 2);
 }

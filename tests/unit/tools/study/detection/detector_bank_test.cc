@@ -22,8 +22,9 @@ TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
   scenario.radar.range_std_m = 0.3;
   scenario.lidar.range_std_m = 0.4;
   const conflict::ConflictParameters parameters = study::DetectorParameters(scenario);
-  // With CUSUM's reference value kappa = 1/2, both sequential tests look for a shift of one
-  // standard deviation of the difference, which is 0.5 m.
+  // CUSUM and SPRT, the two sequential tests, look for the same shift of the difference. With
+  // CUSUM's reference value kappa = 1/2, this shift is one standard deviation of the difference:
+  // 0.5 m.
   EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
   EXPECT_EQ(parameters.bin_width_m, 0.4);
   EXPECT_EQ(parameters.frame_bins, 625) << "250 m as ever";

@@ -115,11 +115,12 @@ TEST(RobustnessTest, HolmCountsAllClaimsInAllSets) {
   study::ClaimInSets claim = InSets(1);
   claim.sets[0] = ClaimWith(-1, 1 * 1.984 / 2.5);
   EXPECT_THAT(OutcomesOf(claim), ElementsAre(InSet::kHolds));
-  // WHEN this difference is one of four: two claims in two sets, all equally uncertain
+  // WHEN two claims both have this difference in two sets, so that there are four comparisons
   claim.sets.push_back(claim.sets[0]);
   const std::vector<study::ClaimInSets> two{claim, claim};
   const auto judged = study::JudgeInSets(two);
-  // THEN four times its p-value is above 5 %
+  // THEN Holm's method multiplies each p-value by four. The result is above 5 %, so no comparison
+  // is decided
   ASSERT_EQ(judged.size(), 2U);
   for (const auto& sets : judged) {
     ASSERT_EQ(sets.size(), 2U);
@@ -192,7 +193,8 @@ TEST(RobustnessTest, HeadingAndSideClaimsHaveVerdictsOfTheirOwn) {
             "holds in all three parameter sets.");
   EXPECT_EQ(study::SentenceOf(finding, study::Part::kSide, 3),
             "hold in set 3; opposite in set 1; undecided in set 2. It is so.");
-  // THEN the claim on the side claims is checked with their runs
+  // THEN the claim about the side claims holds if each side claim has the stated verdict in each
+  // set, and fails if one of them has another verdict
   std::vector<study::ClaimInSets> claims{InSets(3), InSets(3, kCostsNothing)};
   claims[0].sets[0] = ClaimWith(1, 0.1);
   claims[1].sets[0] = claims[1].sets[1] = ClaimWith(-0.1, 0.2);
@@ -235,8 +237,8 @@ TEST(RobustnessTest, AClaimThatIsOppositeInAllSetsIsShownTurnedAround) {
             "Finding 3, heading: opposite in all two parameter sets. It does harm.");
   EXPECT_EQ(on_finding.sign, Sign::kMore);
   EXPECT_EQ(StateOf(on_finding), report::ClaimState::kHolds);
-  // If the outcome of an equality is `opposite`, the claim on the finding is about the difference
-  // from the bound.
+  // A claim of equality with a margin of 1 is opposite, because its difference is 3. So the claim
+  // on the finding says by how much the difference is above the margin: by 2.
   claim = InSets(2, kCostsNothing);
   claim.sets[0] = claim.sets[1] = ClaimWith(3, 0.1, Sign::kEqual, 1);
   study::ExaminedFinding finding = Finding({{kCostsNothing, {1, 2}}}, "It costs something.");
@@ -248,7 +250,8 @@ TEST(RobustnessTest, AClaimThatIsOppositeInAllSetsIsShownTurnedAround) {
 }
 
 TEST(RobustnessTest, AClaimOnOneSideOfItsMarginIsCheckedOnThatSide) {
-  // GIVEN a rule that costs nothing, and in one set saves more than the margin
+  // GIVEN a claim of equality with a margin of 1 that needs only its upper bound (kAbove), and a
+  // difference of -1.2 in set 2, which is below the lower bound of -1
   study::ClaimInSets claim = InSets(2, kCostsNothing);
   claim.quoted.bound = study::Bound::kAbove;
   claim.sets[0] = ClaimWith(-0.2, 0.1, Sign::kEqual, 1);

@@ -52,8 +52,8 @@ TEST(StringRunsTest, MeasuresFromASecondBeforeTheFog) {
   for (const study::CarInString& car : braked.cars) {
     for (const double braking : car.max_deceleration_mps2) EXPECT_LT(braking, 0.5);
   }
-  // BUT they show the braking of the host in the last second before the fog. This run ends when the
-  // fog begins.
+  // BUT the measures show the braking of the host in the last second before 20 s, the time at which
+  // the fog would begin. This run ends at 20 s, so it has no later braking.
   const study::StringOutcome brakes = RunString(HardBraking(18), /*steps=*/200);
   for (const double braking : brakes.cars[0].max_deceleration_mps2) EXPECT_GT(braking, 0.5);
 }

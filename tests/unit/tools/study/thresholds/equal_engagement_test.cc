@@ -73,8 +73,9 @@ TEST(InterpolationErrorTest, LeavesADifferenceUndecidedThatIsNoLarger) {
   EXPECT_EQ(one.verdict(), study::Verdict::kUndecided);
 }
 
-/// The RHE and the gain of a rule in many situations. All rules share the difficulty of each
-/// situation. The gain is this difficulty, minus the mean RHE, plus `more`.
+/// The RHE and the gain of a rule in many situations. Each situation has a random difficulty, which
+/// is the same for all rules. The gain is 30 times this difficulty, minus the mean RHE, plus
+/// `more`.
 struct Rule {
   std::vector<double> rhe_pct;
   std::vector<double> gain;

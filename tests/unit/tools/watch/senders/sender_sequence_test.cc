@@ -92,8 +92,9 @@ TEST(SenderSequenceTest, LosesNothingWhenASenderBeginsAgain) {
   AddRange(sequence, 5000, 10);
   AddRange(sequence, 0, 10);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 20, .restarts = 1}));
-  // The sequence has seen the numbers 0 to 9 since this beginning. If they come again, it takes
-  // them for another beginning only after kBeginsAgain without a newer number.
+  // The sender has begun again once, and has sent the numbers 0 to 9 since then. If these numbers
+  // come a second time, they may be repeated messages. The sequence takes them for another
+  // beginning only after kBeginsAgain without a newer number.
   AddRange(sequence, 0, 10, 0, kNow + SenderSequence::kBeginsAgain);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 30, .restarts = 2}));
 }

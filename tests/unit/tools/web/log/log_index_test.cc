@@ -85,7 +85,7 @@ TEST_F(LogIndexTest, ShowsATornLogAsFarAsItGoes) {
   const LogIndex index(file);
   const std::int64_t steps = CompareAll(file, index);
   EXPECT_GT(steps, 10);
-  // The index also has the messages of the step that the end of the file cuts off.
+  // The file ends within a step. The index also has the messages of this step.
   EXPECT_GE(index.last_step(), steps - 1);
   EXPECT_LE(index.last_step(), steps);
   EXPECT_FALSE(index.run().complete);

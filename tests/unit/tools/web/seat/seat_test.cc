@@ -158,7 +158,7 @@ TEST_F(SeatTest, APageThatIsSilentFor300msDrivesNoMore) {
   EXPECT_FALSE(seat_.lost());
   ExpectEmptySeat(seat_.Look(At(400)));
   EXPECT_TRUE(seat_.lost());
-  // After that, the seat reports every 50 ms that it is empty.
+  // While the page stays silent, the seat reports every 50 ms that it is empty.
   EXPECT_EQ(seat_.next_look(), At(450));
   EXPECT_FALSE(seat_.Look(At(449)));
   ExpectEmptySeat(seat_.Look(At(450)));
@@ -205,7 +205,7 @@ TEST_F(SeatTest, TakesAtMost250InputsASecond) {
   EXPECT_GE(taken, 2500);
   EXPECT_LE(taken, 2500 + static_cast<int>(runtime::kMostInputsAtOnce));
   EXPECT_THAT(why, HasSubstr("250 inputs a second"));
-  // The limit does not apply to the message that the person has left.
+  // The limit does not apply to the message that says that the person has left.
   SeatInput away = Brakes();
   away.present = false;
   while (seat_.Take(kAnna, Brakes(), At(10'000)).message) continue;

@@ -48,7 +48,8 @@ TEST(AccessTest, OnEveryAddressTakesAddressesInNumbersOnly) {
   const Access access({.address = "0.0.0.0", .port = 7680});
   EXPECT_EQ(access.OfPage(From("192.168.1.5:7680")), Verdict::kAllowed);
   EXPECT_EQ(access.OfPage(From("localhost:7680")), Verdict::kAllowed);
-  // The owner of a domain name can make this name resolve to the address of this machine.
+  // The owner of a domain name can make this name resolve to the address of this machine. So the
+  // server accepts no name except localhost.
   EXPECT_EQ(access.OfPage(From("evil.example:7680")), Verdict::kWrongHost);
   EXPECT_EQ(access.OfPage(From("192.168.1:7680")), Verdict::kWrongHost);
   EXPECT_EQ(access.Url(), "http://127.0.0.1:7680/");

@@ -1,5 +1,5 @@
 // The limits of docs/view.md, one test for each limit. The server closes a connection that exceeds
-// a limit, counts it, names it on stderr, and goes on. The time limits are shorter here.
+// a limit, counts it, names it on stderr, and goes on. The tests set shorter time limits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ class ServerLimitsTest : public ::testing::Test {
   void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1",
              bool seat = false) {
     ::testing::internal::CaptureStderr();
-    // The context may still have a handler of the previous server.
+    // poll() executes a handler that the previous server may have left in the context.
     context_.restart();
     context_.poll();
     context_.restart();
@@ -176,7 +176,8 @@ TEST_F(ServerLimitsTest, ViewersLeaveAPlaceForTheOneWhoDrives) {
   std::optional<WebClient> first(connect("fogline.view.v1"));
   WebClient second = connect("fogline.view.v1");
   ASSERT_TRUE(Waits(&ServerCounts::viewers, 2));
-  // The server also sends the page of the seat and its files, but not the page of the viewers.
+  // Although all places of viewers are taken, the server sends the page of the driver (/drive) and
+  // its files. It refuses the page of the viewers (/).
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive.js"))), 200);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
@@ -287,7 +288,7 @@ TEST_F(ServerLimitsTest, FramesOfAClient) {
   Serve({});
   WebClient client(port());
   try {
-    // A machine that sends fewer than 200 frames a second would not exceed the limit.
+    // The limit is 200 frames a second. The test assumes that the machine sends more than this.
     for (int i = 0; i < 100'000; ++i) client.Send("x");
   } catch (const test::WebClosed&) {
   }
@@ -309,7 +310,8 @@ TEST_F(ServerLimitsTest, PingsOfAClient) {
 
 TEST_F(ServerLimitsTest, AClientGetsTheFramesThatWaitForItWhenTheServerEnds) {
   view_.end = [this] { server_->Stop(); };
-  // A busy machine may hold up the server for longer than the 0.3 s of its end.
+  // When the server ends, a client has 0.3 s to take the waiting frames. On a busy machine this
+  // may be too short. Then the test tries again.
   constexpr int kTries = 5;
   std::vector<std::string> got;
   std::uint16_t code = 0;

@@ -146,7 +146,8 @@ TEST(DecodeTest, DecodesTypesThatFoglineDoesNotUse) {
 TEST(DecodeTest, NeedsLittleMemoryForManyDimensionsOfLengthZero) {
   const LcmTypes types(ParseLcm("struct a_t { int32_t n, m; int8_t x[n][n][m]; }", "a.lcm"));
   const LcmStruct& type = *types.Named("a_t");
-  // With n = 65536 and m = 0, lists of lists would contain n * n = 2^32 empty lists.
+  // With n = 65536 and m = 0, lists of lists would contain n * n = 2^32 empty lists. The decoder
+  // gives one empty list in their place.
   auto json = DecodeJson(types, type, Message(type, {0, 1, 0, 0, 0, 0, 0, 0}));
   ASSERT_TRUE(json);
   EXPECT_EQ((*json)["x"], Json::array());

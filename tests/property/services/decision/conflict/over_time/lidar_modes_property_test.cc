@@ -58,9 +58,9 @@ class Lidar {
         break;
     }
     if (stray < model_.stray_share) return anywhere_m;
-    // The model adds the echo's scatter in the fog and the noise, and treats the sum as normally
-    // distributed. The scatter has the distribution Beta(2, 20), with mean 1/11 and variance
-    // 40/(22^2 23).
+    // The sum of the echo's scatter in the fog and of the sensor's noise is drawn from a normal
+    // distribution, because the model treats this sum as normally distributed. The scatter has the
+    // distribution Beta(2, 20), with mean 1/11 and variance 40/(22^2 23).
     const double scatter_m2 = model_.fog_scatter_m * model_.fog_scatter_m * 40 / (22 * 22 * 23);
     return model_.fog_return_m + model_.fog_scatter_m / 11 +
            std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;

@@ -45,8 +45,8 @@ TEST(NisTest, ExceedsItsFivePercentLimitInFivePercentOfTheSteps) {
   EXPECT_NEAR(exceeded / double{kSteps}, 0.05, 4 * deviation);
 }
 
-/// The Bhattacharyya distance of two normal distributions: the part of their means, plus the part
-/// of their standard deviations. Hellinger() computes the Hellinger distance from it.
+/// The Bhattacharyya distance of two normal distributions: a term for their means, plus a term for
+/// their standard deviations. Hellinger() computes the Hellinger distance from this distance.
 double Bhattacharyya(const conflict::Disagreement& disagreement) {
   const double product_m2 = disagreement.radar_std_m * disagreement.lidar_std_m;
   return conflict::BhattacharyyaOfMeans(disagreement) +

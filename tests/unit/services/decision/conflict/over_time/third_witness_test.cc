@@ -46,7 +46,7 @@ TEST_P(EveryBlameTest, FallsOnNoSensorWithoutAWitness) {
   conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
   EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
-  // This also holds if the steps before had a prediction.
+  // Without a prediction no sensor is blamed, even if the steps before had a prediction.
   const auto measure = Make(GetParam());
   for (int i = 0; i < 3; ++i) EXPECT_GT(measure->Step(LidarShortBy(5)).lidar, 0.8);
   EXPECT_EQ(measure->Step(evidence), conflict::Blame{});

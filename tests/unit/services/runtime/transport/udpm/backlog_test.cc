@@ -31,7 +31,7 @@ class Ends {
   Ends& operator=(const Ends&) = delete;
 
   int receiver() const { return ends_[0]; }
-  /// @return whether the kernel had room for the packet in this time
+  /// Sends a packet. @return whether the kernel had room for it before `timeout` was over
   bool Send(const std::string& packet, Duration timeout = kLong) const {
     return PollFor(ends_[1], POLLOUT, timeout) > 0 &&
            send(ends_[1], packet.data(), packet.size(), 0) == static_cast<ssize_t>(packet.size());

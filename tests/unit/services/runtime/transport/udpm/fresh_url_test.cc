@@ -61,11 +61,12 @@ TEST(FreshMulticastUrlTest, ReservesThePortsOfItsLastUrls) {
     last.push_back(runtime::ParseMulticastUrl(runtime::FreshMulticastUrl())->port);
     if (last.size() > runtime::kReservedPorts) last.pop_front();
   }
-  // THEN the last ports differ, although no socket of a network uses them yet
+  // THEN the ports of the last kReservedPorts URLs differ, although no socket of a network uses
+  // them yet
   ports.insert(last.begin(), last.end());
   EXPECT_EQ(ports.size(), runtime::kReservedPorts);
   for (const std::uint16_t port : ports) {
-    // AND no other process can draw them, but LCM's sockets can use them
+    // AND no other process can draw these ports, but LCM's sockets can use them
     EXPECT_EQ(SocketOn(port, /*shares=*/false), -1) << port;
     const int receiver = SocketOn(port, /*shares=*/true);
     EXPECT_GE(receiver, 0) << port;

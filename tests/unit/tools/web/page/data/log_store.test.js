@@ -8,7 +8,7 @@ import {describedTypes, realLog} from "../real_log.js";
 const log = realLog("/steps=700");
 const truth = log.events.filter(({channel}) => channel === "TRUTH").map(({bytes}) => bytes);
 
-/** A server that answers when the test says so. */
+/** A server that answers when the test calls answer(). */
 class Wire {
   constructor() { this.asked = []; }
 

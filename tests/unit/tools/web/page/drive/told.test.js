@@ -108,11 +108,12 @@ test("a car that stops by itself answers the button, if it has not taken the ans
     answer.press("give_back", at(mode), 0);
     assert.equal(answer.words(at(mode), 1500), "");
   }
-  // When the stop is final, the page shows this instead of an answer to the button.
+  // When the stop is final, the page says so, and gives no answer to the button.
   const {MRM_DONE} = describedTypes().arbitration_t.constants;
   answer.press("take_over", at(MRM_COMFORT), 0);
   assert.equal(answer.words(at(MRM_DONE), 1500), "");
-  // A transfer goes on during emergency braking, so the answer may have been taken.
+  // A transfer continues during emergency braking, so the car may have taken the answer. The page
+  // must not say that the car has not taken it.
   answer.press("take_over", at(EMERGENCY_BRAKING), 0);
   assert.equal(answer.words(at(EMERGENCY_BRAKING), 1500), "");
 });
