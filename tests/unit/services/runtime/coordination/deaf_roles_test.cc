@@ -37,6 +37,12 @@ class DeafRolesTest : public testing::Test {
     status.input_late = {ear.late};
     deaf_.Heard(Role::kRadar, status, now_);
   }
+  /// Passes the next STATUS of the radar, with no STATUS of the world before it.
+  void SayRadarAfter(Duration time, std::int64_t age_ms) {
+    now_ += time;
+    age_ms_ = age_ms;
+    SayRadar({.age_ms = age_ms_});
+  }
   /// Passes `signs` STATUS messages of the world and of the radar. Between two STATUS messages the
   /// world computes two steps. Each time the radar's input gets 200 ms older.
   void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
@@ -96,12 +102,8 @@ TEST_F(DeafRolesTest, AMessageThatCameIsNotMissingIfTheStatusBeforeItWasLost) {
   // received the third one.
   world_ticks_ = 1;
   Pass(1);
-  now_ += milliseconds(200);
-  age_ms_ = 0;
-  SayRadar({.age_ms = age_ms_});
-  now_ += milliseconds(200);
-  age_ms_ = 200;
-  SayRadar({.age_ms = age_ms_});
+  SayRadarAfter(milliseconds(200), 0);
+  SayRadarAfter(milliseconds(200), 200);
   world_ticks_ = 4;
   // WHEN the role does not receive the next nine messages, THEN it is not deaf: this can be chance
   Lose(9);
@@ -119,10 +121,8 @@ TEST_F(DeafRolesTest, AMessageThatCameIsNotMissingForAReaderThatIsLate) {
   world_ticks_ = 1;
   Pass(3);
   world_ticks_ = 9;
-  now_ += milliseconds(1);
   SayWorld();
-  age_ms_ = 100;
-  SayRadar({.age_ms = age_ms_});
+  SayRadarAfter(milliseconds(1), 100);
   // WHEN the role does not receive the next two messages, THEN it is not deaf
   Pass(9);
   world_ticks_ = 11;
