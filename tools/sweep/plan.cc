@@ -204,7 +204,8 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   std::int64_t left = kMaxRows / seeds_.count();
   for (const Axis& axis : axes_) left /= static_cast<std::int64_t>(axis.values.size());
   if (left == 0) {
-    throw InputError(fmt::format("error: --seeds and --grid give more than {} rows", kMaxRows));
+    throw InputError(fmt::format("error: --seeds {}:{}: more than {} rows in all", seeds_.first,
+                                 seeds_.last, kMaxRows));
   }
   // The axes of the arbitrator and the other axes form two separate grids. stride_ is the number of
   // points of the grid from one value of an axis to its next value. The last axis of a grid varies

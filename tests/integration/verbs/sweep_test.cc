@@ -273,7 +273,7 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
             "9007199254740991 "
             "nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:1000000000", "--grid", "/fog/bias_m=0:1:101"}),
-            "fogline sweep: error: --seeds and --grid give more than 100000000000 rows\n");
+            "fogline sweep: error: --seeds 1:1000000000: more than 100000000000 rows in all\n");
   EXPECT_EQ(error({"--shard", "4/3"}),
             "fogline sweep: error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");
   EXPECT_THAT(error({"--jobs", "0"}), StartsWith("fogline sweep: error: --jobs: "));
