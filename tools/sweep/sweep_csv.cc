@@ -83,24 +83,25 @@ void AppendRow(const SweepPlan& plan, std::int64_t unit, std::int64_t index, con
 
 SweepFile::SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
                      bool force)
-    : path_(file), plan_(plan), next_unit_(plan.ShardBegin(shard)) {
-  if (IsReplaceable(path_)) {
-    RequireFolderOf(path_, "--out");
-    RefuseForeignSideFiles(path_);
+    : plan_(plan), next_unit_(plan.ShardBegin(shard)), file_(file), sums_(SumsFile(file)) {
+  if (IsReplaceable(file_.path)) {
+    RequireFolderOf(file_.path, "--out");
+    RefuseForeignSideFiles(file_.path);
     Open();
     IsToBeReplaced(shard, force) ? Start(shard) : Resume(shard);
   } else {
-    file_.fd = OpenStream(path_, "--out");
+    file_.fd = OpenStream(file_.path, "--out");
     Write(HeaderLine(plan_), file_);
   }
 }
 
 bool SweepFile::IsToBeReplaced(const Shard& shard, bool force) const {
   if (lseek(file_.fd, 0, SEEK_END) == 0) return true;
-  if (!IsSweep(path_)) Refuse(path_, "the file is no sweep and is not replaced, even with --force");
+  if (!IsSweep(file_.path))
+    Refuse(file_.path, "the file is no sweep and is not replaced, even with --force");
   if (force) return true;
-  if (ReadDescription(path_) == Describe(plan_, shard)) return false;
-  Refuse(path_, "the file exists and is not of this sweep; --force replaces it");
+  if (ReadDescription(file_.path) == Describe(plan_, shard)) return false;
+  Refuse(file_.path, "the file exists and is not of this sweep; --force replaces it");
 }
 
 SweepFile::Handle::~Handle() {
@@ -111,21 +112,21 @@ SweepFile::Handle::~Handle() {
 // writer is possible if a cluster loses the connection to a job, and starts the job a second time
 // while the job's first process still writes.
 void SweepFile::Open() {
-  file_.fd = open(path_.c_str(), kFlags, 0666);
-  if (file_.fd < 0) ThrowCannotWrite(path_, errno);
+  file_.fd = open(file_.path.c_str(), kFlags, 0666);
+  if (file_.fd < 0) ThrowCannotWrite(file_.path, errno);
   if (flock(file_.fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    Refuse(path_, "cannot write: another sweep is writing it");
+    Refuse(file_.path, "cannot write: another sweep is writing it");
   }
 }
 
 void SweepFile::OpenSums() {
-  sums_.fd = open(SumsFile(path_).c_str(), kFlags | O_NOFOLLOW, 0666);
-  if (sums_.fd < 0) ThrowCannotWrite(SumsFile(path_), errno);
+  sums_.fd = open(sums_.path.c_str(), kFlags | O_NOFOLLOW, 0666);
+  if (sums_.fd < 0) ThrowCannotWrite(sums_.path, errno);
 }
 
-void SweepFile::Cut(std::int64_t size, const Handle& file) const {
+void SweepFile::Cut(std::int64_t size, const Handle& file) {
   if (lseek(file.fd, 0, SEEK_END) != size && ftruncate(file.fd, size) != 0) {
-    ThrowCannotWrite(path_, errno);
+    ThrowCannotWrite(file.path, errno);
   }
 }
 
@@ -135,7 +136,7 @@ void SweepFile::Start(const Shard& shard) {
   if (sums_.fd < 0) OpenSums();
   Cut(0, file_);
   Cut(0, sums_);
-  WriteDescription(path_, Describe(plan_, shard));
+  WriteDescription(file_.path, Describe(plan_, shard));
   Write(HeaderLine(plan_), file_);
 }
 
@@ -143,8 +144,8 @@ void SweepFile::Resume(const Shard& shard) {
   const std::int64_t all_rows =
       (plan_.ShardEnd(shard) - plan_.ShardBegin(shard)) * plan_.rows_per_unit();
   // The file is read line by line, so that the memory does not depend on the size of the file.
-  std::ifstream in(path_, std::ios::binary);
-  RowChecker checker(path_);
+  std::ifstream in(file_.path, std::ios::binary);
+  RowChecker checker(file_.path);
   std::string line;
   std::int64_t whole = 0;  // end of the last whole unit, or of the header
   std::int64_t position = 0;
@@ -167,7 +168,7 @@ void SweepFile::Resume(const Shard& shard) {
       throw InputError(
           fmt::format("{}:{}: error: --out: the line differs from the one that this sweep {} "
                       "there; --force starts over",
-                      PathText(path_), row + 2, has_key ? "has written" : "writes"));
+                      PathText(file_.path), row + 2, has_key ? "has written" : "writes"));
     }
     position += static_cast<std::int64_t>(line.size()) + 1;
     if (row >= 0 && ++index == plan_.rows_per_unit()) ++next_unit_;
@@ -185,7 +186,7 @@ void SweepFile::Resume(const Shard& shard) {
 }
 
 void SweepFile::SumRows() {
-  std::ifstream in(path_, std::ios::binary);
+  std::ifstream in(file_.path, std::ios::binary);
   std::string line;
   std::getline(in, line);  // the header
   text_.clear();
@@ -216,14 +217,14 @@ void SweepFile::Append(const std::vector<SweepRow>& rows) {
 void SweepFile::RequireInPlace() const {
   struct stat named {};
   struct stat written {};
-  if (stat(path_.c_str(), &named) == 0 && fstat(file_.fd, &written) == 0 &&
+  if (stat(file_.path.c_str(), &named) == 0 && fstat(file_.fd, &written) == 0 &&
       named.st_dev == written.st_dev && named.st_ino == written.st_ino) {
     return;
   }
   throw std::runtime_error(
       fmt::format("{}: the file was removed or replaced while the sweep wrote it, and its rows are "
                   "lost; call it again to start over",
-                  PathText(path_)));
+                  PathText(file_.path)));
 }
 
 void SweepFile::Write(std::string_view text, const Handle& file) const {
@@ -231,10 +232,10 @@ void SweepFile::Write(std::string_view text, const Handle& file) const {
   // write to a pipe.
   const int error = WriteAll(file.fd, text, sums_.fd < 0 ? WasInterrupted : nullptr);
   if (error == 0) return;
-  if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));
+  if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(file.path)));
   throw std::runtime_error(
       fmt::format("{}: cannot write: {}; call it again to continue at the end of the file",
-                  PathText(path_), std::strerror(error)));
+                  PathText(file.path), std::strerror(error)));
 }
 
 }  // namespace fogline::sweep

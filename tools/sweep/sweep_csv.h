@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/sweep/engine.h"
@@ -36,12 +37,13 @@ class SweepFile {
   void Append(const std::vector<SweepRow>& rows);
 
  private:
-  /// A file descriptor; the destructor closes it.
+  /// A file; the destructor closes it.
   struct Handle {
-    Handle() = default;
+    explicit Handle(std::filesystem::path name) : path(std::move(name)) {}
     ~Handle();
     Handle(const Handle&) = delete;
     Handle& operator=(const Handle&) = delete;
+    std::filesystem::path path;
     int fd = -1;
   };
 
@@ -50,7 +52,7 @@ class SweepFile {
   /// Whether to start with an empty file. @throws InputError if the existing file must not be
   /// replaced
   bool IsToBeReplaced(const Shard& shard, bool force) const;
-  void Cut(std::int64_t size, const Handle& file) const;
+  static void Cut(std::int64_t size, const Handle& file);
   void Start(const Shard& shard);
   /// Checks the existing rows and cuts off the bytes after the last whole unit.
   void Resume(const Shard& shard);
@@ -59,12 +61,11 @@ class SweepFile {
   void RequireInPlace() const;
   void Write(std::string_view text, const Handle& file) const;
 
-  std::filesystem::path path_;
   const SweepPlan& plan_;
   std::int64_t next_unit_;
   std::string text_;
   Handle file_;
-  Handle sums_;  // not open for a pipe or device
+  Handle sums_;  // the checksums; not open for a pipe or device
 };
 
 }  // namespace fogline::sweep
