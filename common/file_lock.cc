@@ -113,8 +113,12 @@ FileLock::FileLock(const std::filesystem::path& path, Kind kind, std::string_vie
                                    PathText(path), option, owner,
                                    holder ? fmt::format(" (pid {})", *holder) : ""));
     }
-    if (IsFileOf(path, fd_) || tries == kTries) return;
+    if (IsFileOf(path, fd_)) return;
     close(fd_);
+    if (tries == kTries) {
+      throw InputError(
+          fmt::format("{}: error: {}: is replaced repeatedly", PathText(path), option));
+    }
   }
 }
 

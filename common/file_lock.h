@@ -23,7 +23,8 @@ class FileLock {
   /// @param owner the kind of owner that the error message names, such as "run"
   /// @param patience longest wait until other processes release their locks
   /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without
-  ///     the pid if /proc/locks does not give it. If the file cannot be written, the text says why.
+  ///     the pid if /proc/locks does not give it. If the file cannot be written, or another process
+  ///     replaces it repeatedly, the text says so.
   FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
            std::string_view owner, Duration patience = Duration::zero());
   ~FileLock();
