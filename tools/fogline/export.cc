@@ -1,5 +1,6 @@
 // fogline export: writes a log as CSV, MAT-file or MCAP file, for programs that do not know LCM.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <memory>
 #include <string>
@@ -46,13 +47,28 @@ bool HasExtension(const std::filesystem::path& out, std::string_view extension) 
 
 bool IsMat(const std::filesystem::path& out) { return HasExtension(out, ".mat"); }
 
+// A name with one of these extensions is a mistake, because an export never writes such a file, and
+// a folder hardly has such a name.
+constexpr std::array<std::string_view, 9> kNoFolders{".csv",  ".tsv", ".txt",  ".json",   ".xls",
+                                                     ".xlsx", ".h5",  ".hdf5", ".parquet"};
+
+/// @throws InputError if the name is that of a file that `--out` does not write
+void CheckExtension(const std::filesystem::path& out) {
+  if (HasExtension(out, ".mcap")) {
+    throw InputError(
+        fmt::format("{}: error: --out: an MCAP file is written with --mcap", PathText(out)));
+  }
+  const auto has = [&out](std::string_view extension) { return HasExtension(out, extension); };
+  if (std::ranges::any_of(kNoFolders, has)) {
+    throw InputError(fmt::format("{}: error: --out: neither FILE.mat nor a folder for CSV files",
+                                 PathText(out)));
+  }
+}
+
 /// Checks that the files may be written. Without --force none of these files may exist. With
 /// --force an existing file must be an export. @throws InputError
 void CheckFiles(const ExportArguments& arguments) {
-  if (HasExtension(arguments.out, ".mcap")) {
-    throw InputError(fmt::format("{}: error: --out: an MCAP file is written with --mcap",
-                                 PathText(arguments.out)));
-  }
+  CheckExtension(arguments.out);
   const bool is_mat = IsMat(arguments.out);
   std::vector<std::filesystem::path> files{arguments.out};
   if (!is_mat) {

@@ -195,6 +195,9 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 2);
   EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: it is a file, not a folder\n");
   EXPECT_EQ(error("run.MCAP"), "run.MCAP: error: --out: an MCAP file is written with --mcap\n");
+  for (const std::string file : {"run.csv", "run.XLSX", "out/run.json"}) {
+    EXPECT_EQ(error(file), file + ": error: --out: neither FILE.mat nor a folder for CSV files\n");
+  }
   EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
 }
 
