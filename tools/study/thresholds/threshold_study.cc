@@ -254,17 +254,20 @@ std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
       "RHE, the best of them counts (all thresholds that the DoC never reaches in clear air have "
       "an RHE of 0). The curve can err at that point. For each of the two thresholds beside the "
       "point, we take the distance of its value from the straight line between its two neighbours. "
-      "The possible error is the larger of the two distances, times 4 s (1 - s). Here s is the "
-      "place of the point between the two thresholds, from 0 to 1. So the error is 0 at a "
-      "threshold and largest in the middle. A claim whose interval is not farther from 0 than this "
-      "error does not hold. Intervals: {} resamples of the situations, each with its own curve. So "
-      "the intervals take three things into account: rule and curve meet the same situations, the "
-      "RHE of both is uncertain, and each resample chooses its own best threshold. SI is a mean of "
-      "ratios of small numbers, so compromised safety in metres is beside it. The tables \"Both "
-      "humans\" and the file threshold-humans.csv have some of the rules. There, either the "
-      "perfect or the fallible human drives in all situations, in place of the drawn human. {} "
-      "These situations run with the drawn radars, and again with a realistic radar in all of "
-      "them. {}",
+      "Let h be the difference of RHE between the two thresholds, and g that between one of them "
+      "and its other neighbour. If h is larger than g, the distance of this threshold is "
+      "multiplied by (g + h) / (2 g). If neither threshold has two neighbours, the difference of "
+      "their values takes the place of the distance. The possible error is the larger of the two "
+      "distances, times 4 s (1 - s). Here s is the place of the point between the two thresholds, "
+      "from 0 to 1. So the error is 0 at a threshold and largest in the middle. A claim whose "
+      "interval is not farther from 0 than this error does not hold. Intervals: {} resamples of "
+      "the situations, each with its own curve. So the intervals take three things into account: "
+      "rule and curve meet the same situations, the RHE of both is uncertain, and each resample "
+      "chooses its own best threshold. SI is a mean of ratios of small numbers, so compromised "
+      "safety in metres is beside it. The tables \"Both humans\" and the file threshold-humans.csv "
+      "have some of the rules. There, either the perfect or the fallible human drives in all "
+      "situations, in place of the drawn human. {} These situations run with the drawn radars, and "
+      "again with a realistic radar in all of them. {}",
       mixed.situations, MixText(), beside.fixed, widest, kReplicates, HumansText(),
       RealisticNoiseText());
 }
