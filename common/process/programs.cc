@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <sstream>
+#include <system_error>
 
 namespace fogline {
 
@@ -18,7 +19,10 @@ std::filesystem::path FindProgram(const std::string& name) {
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
     std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / name;
-    if (std::filesystem::is_regular_file(program) && IsExecutable(program)) return program;
+    std::error_code no_access;  // as a shell, skip a folder that this user may not search
+    if (std::filesystem::is_regular_file(program, no_access) && IsExecutable(program)) {
+      return program;
+    }
   }
   return {};
 }

@@ -36,8 +36,9 @@ TEST(ProgramsTest, FindsTheFirstExecutableFileInPath) {
     std::filesystem::create_directory(folder.path() / part);
     std::ofstream(folder.path() / part / "tool") << "#!/bin/sh\n";
   }
-  const PathIs path(folder.File("none") + ":" + folder.File("first") + ":" + folder.File("second") +
-                    ":" + folder.File("third"));
+  std::filesystem::create_symlink("loop", folder.path() / "loop");  // no user can search it
+  const PathIs path(folder.File("none") + ":" + folder.File("loop") + ":" + folder.File("first") +
+                    ":" + folder.File("second") + ":" + folder.File("third"));
   EXPECT_EQ(FindProgram("tool"), "") << "no file is executable";
   for (const char* part : {"third", "second"}) {
     const std::filesystem::path tool = folder.path() / part / "tool";
