@@ -79,6 +79,11 @@ class Arbitrator {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
   bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
+  /// Whether the driver has taken over not long ago, and a manoeuvre has run before.
+  bool recovers_from_manoeuvre() const {
+    return take_over_ && take_over_->manoeuvred() &&
+           take_over_->outcome().state == take_over::TakeOverState::kRecovering;
+  }
   /// Sets whether the automation is available. Only an available automation gets authority back
   /// from a driver who was asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }

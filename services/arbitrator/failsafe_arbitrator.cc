@@ -60,7 +60,10 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
-      Drive(arbitration_t::HUMAN, inputs.driver.newest->acceleration_mps2);
+      // Only RECOVERING tells the vehicle that the driver has ended a manoeuvre.
+      Drive(
+          arbitrator_.recovers_from_manoeuvre() ? arbitration_t::RECOVERING : arbitration_t::HUMAN,
+          inputs.driver.newest->acceleration_mps2);
       break;
     case Decision::kHold:
       Drive(last_mode_, last_mps2_.value_or(inputs.ego.newest->acceleration_mps2));

@@ -80,6 +80,23 @@ TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvre) {
   EXPECT_EQ(arbitrator_.minimal_risk(), 0);
 }
 
+TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvreAlsoIfTheAutomationIsLost) {
+  driver_.readiness = 0;
+  Step();
+  StepUntil(arbitration_t::MRM_COMFORT);
+  inputs_.automation.state = InputState::kLost;
+  for (int k = 0; k < 10; ++k) Step();
+  driver_.readiness = 1;
+  // The vehicle ends the manoeuvre only at RECOVERING, so a lost command must not matter.
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(Step().mode, arbitration_t::RECOVERING);
+    EXPECT_EQ(last_.acceleration_mps2, -0.4);
+    EXPECT_EQ(last_.lambda_human, 1);
+  }
+  StepUntil(arbitration_t::HUMAN);
+  EXPECT_EQ(arbitrator_.minimal_risk(), 0);
+}
+
 /// A person drives. The driver's process sends its messages also when no person is there; the
 /// readiness is then 0.
 class FailsafePersonTest : public FailsafeTakeOverTest {
