@@ -117,7 +117,7 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
                                     .readiness = driver.readiness,
                                     .speed_mps = ego.speed_mps,
                                     .applied_mps2 = sent_mps2_.value_or(ego.acceleration_mps2),
-                                    .track = &track,
+                                    .track = ShowsCar(track) ? &track : nullptr,
                                     .acknowledged = driver.acknowledged != 0,
                                     .gives_back = driver.gives_back != 0});
   if (take_over_->in_manoeuvre()) {
@@ -153,12 +153,16 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
   return true;
 }
 
+bool Arbitrator::ShowsCar(const track_t& track) const {
+  return track.valid && track.covariance[0][0] <= max_track_variance_m2_;
+}
+
 void Arbitrator::Guard(const ego_t& ego, const track_t& track, arbitration_t& command) {
   if (!aeb_) return;
   models::Situation seen{.speed_mps = ego.speed_mps,
                          .acceleration_mps2 = ego.acceleration_mps2,
                          .ahead = std::nullopt};
-  if (track.valid && track.covariance[0][0] <= max_track_variance_m2_) {
+  if (ShowsCar(track)) {
     seen.ahead = models::CarAhead{.gap_m = track.state[0],
                                   .speed_mps = ego.speed_mps + track.state[1],
                                   .acceleration_mps2 = ego.acceleration_mps2 + track.state[2]};

@@ -102,6 +102,8 @@ class Arbitrator {
   /// @return false if the host is in a minimal risk manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
+  /// Whether the track shows where a preceding car is, and is certain enough (acc.max_track_std_m).
+  bool ShowsCar(const track_t& track) const;
 
   double threshold_;
   ConflictMeter meter_;
@@ -114,7 +116,7 @@ class Arbitrator {
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only for a driver who must be asked
   std::optional<models::Aeb> aeb_;                // only for a host that has emergency braking
-  double max_track_variance_m2_;                  // limit for a track that emergency braking uses
+  double max_track_variance_m2_;                  // limit for a track that shows a car
   double easing_per_step_;                        // m/s2; decrease of eased_mps2_ per step
   double eased_mps2_ = 0;                         // limit of the automation's offer after a request
   bool automation_there_ = true;

@@ -129,5 +129,25 @@ TEST(ArbitratorTest, BrakesAlsoWhileItAsksTheDriver) {
   EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::REQUEST);
 }
 
+TEST(ArbitratorTest, BeginsAManoeuvreAtOnceOnlyForACarThatATrackShowsWithCertainty) {
+  Scenario scenario;
+  scenario.arbitrator.window_steps = 1;
+  scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
+  for (const double std_m : {scenario.acc.max_track_std_m, scenario.acc.max_track_std_m + 0.01}) {
+    SCOPED_TRACE(std_m);
+    arbitrator::Arbitrator arbitrator(scenario);
+    Messages m = Differing(2);
+    m.ego.speed_mps = 20;
+    EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::REQUEST);
+    m.track.valid = 1;
+    m.track.state[0] = 5;
+    m.track.state[1] = -10;
+    m.track.covariance[0][0] = std_m * std_m;
+    const bool certain = std_m <= scenario.acc.max_track_std_m;
+    EXPECT_EQ(Step(arbitrator, m).mode,
+              certain ? arbitration_t::MRM_EMERGENCY : arbitration_t::REQUEST);
+  }
+}
+
 }  // namespace
 }  // namespace fogline
