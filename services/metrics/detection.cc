@@ -1,5 +1,6 @@
 #include "services/metrics/detection.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fogline::metrics {
@@ -10,10 +11,11 @@ constexpr double kSecondsPerHour = 3600;
 }  // namespace
 
 double LidarError(const Sample& sample, const LidarSection& lidar) {
-  const double right_m = std::sqrt(sample.host_gap_m * sample.host_gap_m +
-                                   lidar.lateral_offset_m * lidar.lateral_offset_m) +
-                         lidar.bias_m;
-  return sample.lidar_range_m - right_m;
+  // After a collision the gap is negative. The LiDAR then measures a gap of 0.
+  const double gap_m = std::max(sample.host_gap_m, 0.0);
+  const double right_m =
+      std::sqrt(gap_m * gap_m + lidar.lateral_offset_m * lidar.lateral_offset_m) + lidar.bias_m;
+  return sample.lidar_range_m - std::max(right_m, 0.0);
 }
 
 DetectionAccumulator::DetectionAccumulator(const Scenario& scenario)

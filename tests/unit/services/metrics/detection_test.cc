@@ -93,6 +93,23 @@ TEST(DetectionTest, AnAutomationOnAWrongTrackIsWrongAlsoIfTheLidarIsRight) {
   EXPECT_EQ(Collect(run).wrong_automation_s, kStep_s);
 }
 
+TEST(DetectionTest, ALidarIsRightIfItMeasuresNoDistanceAfterACollision) {
+  auto run = ClearRun(3);
+  for (metrics::Sample& sample : run) {
+    sample.host_gap_m = -3;
+    sample.lidar_range_m = 0;
+    sample.doc = 0.9;
+    GiveToHuman(sample);
+  }
+  for (const double bias_m : {0.0, -0.5}) {  // a range is never below 0
+    Scenario scenario;
+    scenario.lidar.bias_m = bias_m;
+    const metrics::DetectionMetrics m = Collect(run, scenario);
+    EXPECT_EQ(m.deception_to_alarm_s, std::nullopt);
+    EXPECT_EQ(m.wrong_human_s, 2 * kStep_s);
+  }
+}
+
 TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
   Scenario scenario;
   scenario.lidar.bias_m = 0.5;
