@@ -1,10 +1,14 @@
 // fogline run: makes one run of a scenario.
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -13,8 +17,10 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "services/log/event_log.h"
 #include "services/runtime/process/program_options.h"
 #include "services/runtime/wire/build_id.h"
+#include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/other_build.h"
 #include "services/runtime/wire/scenario_parts.h"
 #include "services/runtime/wire/step_ring.h"
@@ -195,9 +201,55 @@ runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
   return builds;
 }
 
-/// Continues the run of a log to its end. If the log already has the whole run, no step is added. A
-/// log with the whole run but without a seal is verified. The log is sealed if the verification
-/// succeeds. --no-verify omits verification and seal.
+/// The roles that are not computed again: roles of another build and, if no seal names the builds,
+/// the roles that were started elsewhere (--external).
+std::vector<runtime::OtherBuild> OthersIn(const runner::LoggedRun& run,
+                                          const std::vector<Role>& external) {
+  std::vector<runtime::OtherBuild> others = replay::OtherBuildsIn(run);
+  if (run.seal) return others;
+  for (const Role role : external) {
+    others.push_back(
+        {.role = role, .pid = 0, .host = "", .build = runtime::kUnknownBuild, .ours = {}});
+  }
+  return others;
+}
+
+/// Measures a log that has the whole run. An incomplete event behind the last step is removed, such
+/// as a seal that was being written when the computer crashed.
+runner::LoggedRun MeasureWhole(const runner::ResumedLog& log, const std::filesystem::path& file) {
+  const log::LogHead& head = log.resumption().remains.head;
+  runner::LoggedRun run = runner::MeasureLoggedRun(file, log.scenario());
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown && run.events.bytes == head.bytes && std::cmp_less(head.bytes, size)) {
+    const log::EventLogWriter cut(file, head);
+    run = runner::MeasureLoggedRun(file, log.scenario());
+  }
+  if (run.complete) return run;
+  throw InputError(fmt::format("{}: error: --resume: {}", PathText(file), run.note));
+}
+
+/// Measures a log that has the whole run, and verifies it if it has no seal. Seals the log if the
+/// verification succeeds. --no-verify omits verification and seal.
+runner::RunResult ResultOfWhole(const runner::ResumedLog& log, const runner::RunOptions& options,
+                                const runtime::SigningKey* key) {
+  const runner::LogSealer sealer(options.log);
+  runner::LoggedRun run = MeasureWhole(log, options.log);
+  if (options.announce) Notice(PathText(options.log) + ": the run is complete");
+  runner::RunResult result = std::move(run.result);
+  // If the log has all steps but no seal, an earlier runner ended before it sealed the log.
+  const bool to_seal = !run.seal;
+  auto& verification = result.verification;
+  if (options.verify.value_or(to_seal)) {
+    verification = replay::VerifyRun(options.log, run, OthersIn(run, options.external));
+  }
+  if (to_seal && verification && !verification->roles.empty() && verification->Holds()) {
+    sealer.Seal(run, {}, {.builds = BuildsOf(*verification)}, key);
+  }
+  return result;
+}
+
+/// Continues the run of a log to its end. If the log already has the whole run, no step is added.
 int Resume(RunArguments& arguments) {
   runner::RunOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
@@ -211,26 +263,8 @@ int Resume(RunArguments& arguments) {
                           .result = {},
                           .resumed = log.resumption().remains.steps,
                           .computed = !log.complete()};
-  if (outcome.computed) {
-    outcome.result = runner::RunScenario(log.scenario(), options);
-    return Print(arguments, outcome);
-  }
-  if (options.announce) Notice(PathText(options.log) + ": the run is complete");
-  const runner::LogSealer sealer(options.log);
-  runner::LoggedRun run = runner::MeasureLoggedRun(options.log, log.scenario());
-  if (!run.complete) {
-    throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
-  }
-  outcome.result = std::move(run.result);
-  // If the log has all steps but no seal, an earlier runner ended before it sealed the log.
-  const bool to_seal = !run.seal;
-  auto& verification = outcome.result.verification;
-  if (options.verify.value_or(to_seal)) {
-    verification = replay::VerifyRun(options.log, run, replay::OtherBuildsIn(run));
-  }
-  if (to_seal && verification && verification->Holds()) {
-    sealer.Seal(run, {}, {.builds = BuildsOf(*verification)}, key ? &*key : nullptr);
-  }
+  outcome.result = outcome.computed ? runner::RunScenario(log.scenario(), options)
+                                    : ResultOfWhole(log, options, key ? &*key : nullptr);
   return Print(arguments, outcome);
 }
 

@@ -96,6 +96,45 @@ TEST_F(ResumeOfCompleteLogTest, VerifiesAndSealsTheLogOfARunnerThatDiedBeforeItS
   EXPECT_TRUE(again["left_out"].empty()) << again;
 }
 
+TEST_F(ResumeOfCompleteLogTest, SealsALogWhoseSealIsTorn) {
+  const auto whole = Undisturbed();
+  // A computer that crashes may leave a part of the seal. The shortest part is one byte.
+  LeaveUnsealed();
+  const auto steps = std::filesystem::file_size(log_);
+  const auto sealed = std::filesystem::file_size(File("whole.lcm"));
+  for (const auto bytes : {steps + 1, (steps + sealed) / 2, sealed - 1}) {
+    SCOPED_TRACE(bytes);
+    std::filesystem::copy(File("whole.lcm"), log_,
+                          std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(log_, bytes);
+    EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), kRoles.size() - 1);
+    EXPECT_EQ(Digest()["seal"], "holds");
+  }
+}
+
+TEST_F(ResumeOfCompleteLogTest, DoesNotComputeAgainWhatAnExternalRoleHasComputed) {
+  Undisturbed();
+  // GIVEN the log of a run with another driver, whose runner was killed before it sealed the log
+  const auto leave = [this] {
+    Copy(File("whole.lcm"), log_,
+         [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
+           const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
+           if (step == 100 && event.channel == "DRIVER_COMMAND") data[runtime::kHeaderEnd + 7] ^= 1;
+           return event.channel != "FOGLINE_SEAL";
+         });
+  };
+  const Words external{"--external", "driver", "--lcm-url", runtime::FreshMulticastUrl()};
+  leave();
+  EXPECT_EQ(Resume().code, 1) << "without --external, the driver counts as Fogline's";
+  leave();
+  const Outcome outcome = Resume(external);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto verified = nlohmann::json::parse(outcome.out, nullptr, false)["verified"];
+  EXPECT_EQ(verified["roles"].size(), kRoles.size() - 2) << verified;
+  EXPECT_EQ(verified["left_out"].size(), 1U) << verified;
+  EXPECT_EQ(Digest()["seal"], "holds");
+}
+
 TEST_F(ResumeOfCompleteLogTest, SealsNothingThatItHasNotVerified) {
   Undisturbed();
   const std::string key = File("key");
