@@ -291,6 +291,10 @@ void RequireFolderOf(const fs::path& file, std::string_view option) {
 
 void RequireWritable(const fs::path& file, std::string_view option) {
   const Target target = TargetOf(file);
+  std::error_code error;  // also set if there is no such file
+  if (fs::symlink_status(target.path, error).type() == fs::file_type::none) {
+    ThrowCannotWrite(file, option, error.value());
+  }
   if (const std::string why = Obstacle(file, target); !why.empty()) {
     ThrowCannotWrite(file, option, why);
   }
@@ -304,7 +308,9 @@ OutputFolder::OutputFolder(fs::path folder, std::string_view option) : folder_(s
   RequireFolderOf(folder_.has_filename() ? folder_ : folder_.parent_path(), option);
   std::error_code error;
   is_new_ = fs::create_directory(folder_, error);
-  if (error && fs::exists(folder_) && !fs::is_directory(folder_)) {
+  std::error_code ignored;
+  if (const fs::file_status there = fs::status(folder_, ignored);
+      error && fs::exists(there) && !fs::is_directory(there)) {
     ThrowCannotWrite(folder_, option, "it is a file, not a folder");
   }
   if (error) ThrowCannotWrite(folder_, option, error.value());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/core.h>
@@ -87,7 +88,8 @@ int RunCompare(const CompareArguments& arguments) {
   compare::CheckLeader(car, recorded, run.result.samples, arguments.recording);
   const bool has_out = !arguments.out.empty();
   if (has_out) {
-    if (IsReplaceable(arguments.out) && std::filesystem::exists(arguments.out)) {
+    std::error_code unknown;  // RequireWritable() says why the file cannot be examined
+    if (IsReplaceable(arguments.out) && std::filesystem::exists(arguments.out, unknown)) {
       throw InputError(fmt::format("{}: error: --out: the file exists and is not replaced",
                                    PathText(arguments.out)));
     }

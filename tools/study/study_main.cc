@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -70,7 +71,11 @@ void RequireScenarios(const std::filesystem::path& folder,
   }
   for (const std::string& name : names) {
     const std::filesystem::path file = folder / name;
-    if (std::filesystem::exists(file)) continue;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) continue;
+    if (error) {
+      throw InputError(fmt::format("{}: error: --scenarios: {}", PathText(file), error.message()));
+    }
     throw InputError(
         fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
                     "with {}. In Fogline's sources it is scenario/",

@@ -183,6 +183,9 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
   EXPECT_EQ(folder.err,
             "/nowhere/paper.json: error: --scenarios: there is no such file; the option names the "
             "folder with paper.json and dense_fog.json. In Fogline's sources it is scenario/\n");
+  const std::string long_name(300, 'x');
+  EXPECT_EQ(Study({"policy", "--seeds", "1", "--scenarios", long_name}).err,
+            long_name + "/paper.json: error: --scenarios: File name too long\n");
   const ScratchFolder without_sets;
   for (const char* file : {"paper.json", "dense_fog.json"}) {
     std::filesystem::copy(SourceDirectory() / "scenario" / file, without_sets.path());

@@ -308,5 +308,16 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
   EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);
 }
 
+TEST_F(DocumentTest, HasANameThatIsRefusedIfItIsTooLong) {
+  const std::string file(300, 'x');
+  for (const Words& words : Calls()) {
+    SCOPED_TRACE(words.front());
+    const Outcome outcome = Call(words, {file});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, EndsWith(file + ": error: " + words.back() +
+                                      ": cannot write: File name too long\n"));
+  }
+}
+
 }  // namespace
 }  // namespace fogline::test

@@ -313,6 +313,11 @@ TEST_F(AtomicFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
             "/proc/result.csv: error: --out: cannot write: No such file or directory");
   EXPECT_EQ(ErrorOf([&] { OutputFolder("/proc", "--logs"); }),
             "/proc: error: --logs: cannot write: No such file or directory");
+  const std::string long_name = folder_.File(std::string(300, 'x'));
+  EXPECT_EQ(ErrorOf([&] { RequireWritable(long_name, "--out"); }),
+            long_name + ": error: --out: cannot write: File name too long");
+  EXPECT_EQ(ErrorOf([&] { OutputFolder(long_name, "--png"); }),
+            long_name + ": error: --png: cannot write: File name too long");
 }
 
 }  // namespace
