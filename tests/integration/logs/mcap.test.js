@@ -1,13 +1,16 @@
 // MCAP's own library reads an exported log. Every number of every channel equals the number in the
 // CSV export.
 import assert from "node:assert/strict";
-import {execFileSync} from "node:child_process";
+import {execFileSync, spawn, spawnSync} from "node:child_process";
+import {createSocket} from "node:dgram";
+import {once} from "node:events";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {open} from "node:fs/promises";
 import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
 import path from "node:path";
 import {after, before, test} from "node:test";
+import {setTimeout} from "node:timers/promises";
 
 const require = createRequire(import.meta.url);
 const {McapIndexedReader, McapStreamReader} = require("@mcap/core");
@@ -139,6 +142,28 @@ test("the wall clock of a log is a channel of the file", async (t) => {
   await compareWithCsv(reader, csv, 10);
   const [clock] = [...reader.channelsById.values()].filter(({topic}) => topic === "WALL_CLOCK");
   assert.equal(clock.metadata.get("from"), "recorder");
+});
+
+test("a log of another logger has the messages outside of steps at the simulated time", async (t) => {
+  const [log, mcap] = ["recorded.lcm", "recorded.mcap"].map((name) => path.join(folder, name));
+  const socket = createSocket("udp4").bind(0, "127.0.0.1");
+  await once(socket, "listening");
+  const url = `udpm://239.255.76.67:${socket.address().port}?ttl=0`;  // a port that is free
+  socket.close();
+  const record = spawn(process.env.FOGLINE, ["record", log, "--lcm-url", url]);
+  t.after(() => record.kill("SIGKILL"));
+  await once(record.stderr, "data");  // it says what it records when it has joined
+  fogline("run", "scenario/paper.json", "--quiet", "--lcm-url", url, "--set", "/steps=50", "--log",
+          path.join(folder, "own.lcm"));
+  const isWhole = () => spawnSync(process.env.FOGLINE, ["digest", log]).status === 0;
+  for (const end = Date.now() + 60_000; !isWhole() && Date.now() < end;) await setTimeout(50);
+  record.kill("SIGINT");
+  await once(record, "exit");
+  fogline("export", log, "--mcap", mcap);
+  const {statistics, channelsById} = await indexed(t, mcap);
+  assert.ok([...channelsById.values()].some(({topic}) => topic === "STATUS"));
+  assert.equal(statistics.messageStartTime, 0n);
+  assert.equal(statistics.messageEndTime, 49n * 100_000_000n);
 });
 
 test("the summary counts what the file has, and finds one channel at one moment", async (t) => {

@@ -1,5 +1,6 @@
 #include "tools/export/mcap/mcap_export.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <fstream>
@@ -103,19 +104,33 @@ class Exporter {
   }
 
   /// Adds the messages of this run that belong to no step, in the order of the log. Stops before
-  /// the first event that was logged after `utime`. If `utime` is nullopt, adds all remaining
-  /// messages.
+  /// the first message with a simulated time after `utime`. If `utime` is nullopt, adds all
+  /// remaining messages.
   void AddEventsUntil(std::optional<std::int64_t> utime) {
     while (true) {
-      if (!event_) event_ = events_.Next();
-      if (!event_ || (utime && event_->utime > *utime)) return;
+      if (!event_) ReadEvent();
+      if (!event_ || (utime && event_utime_ > *utime)) return;
       const std::size_t channel = ChannelBesideSteps(*event_);
       if (channel != kNone && log::IsOfRun(*event_, run_id_.value_or(0))) {
         AddMessage(channel, event_->data, runtime::ReadInt64(event_->data, runtime::kStepOffset),
-                   event_->utime);
+                   event_utime_);
       }
       event_.reset();
     }
+  }
+
+  /// Reads the next event, and finds its simulated time. The recorder logs each event at its
+  /// simulated time. Other loggers log an event at the wall clock. Then the simulated time is that
+  /// of the newest step that was logged before.
+  void ReadEvent() {
+    event_ = events_.Next();
+    if (!event_) return;
+    if (log::IsStepChannel(event_->channel) && log::IsOfRun(*event_, run_id_.value_or(0))) {
+      const std::int64_t utime = runtime::ReadInt64(event_->data, kUtimeOffset);
+      has_wall_clock_ = event_->utime != utime;
+      newest_utime_ = std::max(newest_utime_, utime);
+    }
+    event_utime_ = has_wall_clock_ ? newest_utime_ : event_->utime;
   }
 
   void AddMessage(std::size_t channel, runtime::Bytes bytes, std::int64_t step,
@@ -184,6 +199,9 @@ class Exporter {
   const web::LcmTypes& types_ = web::FoglineTypes();
   log::EventLogReader events_;       // the messages outside of steps
   std::optional<log::Event> event_;  // read, but not added yet
+  std::int64_t event_utime_ = 0;     // the simulated time of event_
+  std::int64_t newest_utime_ = 0;    // the simulated time of the newest step in the events so far
+  bool has_wall_clock_ = true;       // whether the log has events at the wall clock
   std::optional<std::int64_t> run_id_;
   Writer writer_;
   std::array<std::optional<ChannelId>, kNumChannels + 1> ids_{};
