@@ -54,11 +54,11 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // A role without a run only sends notices that it waits, so it does not fail. A role in real time
-  // does not fail either: the other roles go on without it, and the runner decides how long the
-  // role may be silent.
-  if (own_.left() || !run_.id || run_.realtime || !failed.since ||
-      !runner_.Stalled(*failed.since, now))
+  // A role that waits for a run or its scenario does not fail: the run waits for it, and the runner
+  // decides for how long. A role in real time does not fail either: the other roles go on without
+  // it, and the runner decides how long the role may be silent.
+  if (own_.left() || own_.Waits() || run_.realtime || !failed.since ||
+      !runner_.Stalled(std::max(*failed.since, joined_), now))
     return;
   own_.Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                         failed.error));

@@ -43,7 +43,8 @@ class Membership {
   /// Asks the runner of `run` for a new RUN. The field answer_to of the new RUN names this process,
   /// which shows that the runner is there and that the RUN is no copy.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
+  /// In lockstep the role fails if nothing could be sent since it joined, for longer than the run's
+  /// stall limit.
   void CheckSends(TimePoint now);
   /// Whether the runner has given the role's place to another process. If an option names the run,
   /// the RUN may come from a played log, and then it names a process of the logged run. So in this

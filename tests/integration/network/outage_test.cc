@@ -236,6 +236,24 @@ TEST_F(OutageTest, ARoleInRealtimeThatCouldSendNothingForLongGoesOn) {
   EXPECT_EQ(result["failed_sends"][0]["error"], "Operation not permitted");
 }
 
+TEST_F(OutageTest, ARoleThatCouldSendNothingWhileItWaitedTakesPart) {
+  // GIVEN a driver that can send nothing while it waits for a run, for longer than the stall
+  // timeout
+  const Lab lab(2);
+  stall_timeout_s_ = "4";
+  Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
+  ASSERT_TRUE(driver.WaitForErr("waiting for a run")) << driver.Err();
+  lab[1].Do(kFirewall);
+  LastFor(milliseconds(5000));
+  // WHEN a run calls it, and the driver can send again a second later
+  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver"})));
+  LastFor(milliseconds(1000));
+  lab[1].Do("nft delete table inet reload");
+  // THEN the driver takes part in this run
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
 TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   // GIVEN a driver that may join any announced run, and that takes part in a run over an interface
   const Machine machine("lab");
