@@ -22,6 +22,7 @@ class FallbackLogTest : public testing::Test {
     status.header = {.run_id = 1, .step = step, .utime = step * kStep_us};
     status.role = role;
     status.instance = 1;
+    status.state = status_t::RUNNING;
     status.fallback = fallback;
     status.num_inputs = static_cast<std::int32_t>(inputs.size());
     for (const auto& [channel, state] : inputs) {
@@ -99,6 +100,19 @@ TEST_F(FallbackLogTest, ForgetsWhatThePredecessorOfAProcessHadLost) {
   // When the new process receives RADAR again, the log reports this.
   next.input_state = {kOk};
   EXPECT_EQ(Add(next), "step 13: fusion: RADAR ok again");
+}
+
+TEST_F(FallbackLogTest, DoesNotSayThatAFallbackHasEndedBecauseItsProcessWasRestarted) {
+  Add(Said("arbitrator", 30, {{"TRACK", kLost}}, "the human drives"));
+  status_t next = Said("arbitrator", 0, {});
+  next.instance = 2;
+  for (const std::int8_t state : {status_t::WAITING, status_t::READY}) {
+    next.state = state;
+    EXPECT_EQ(Add(next), "");
+  }
+  EXPECT_EQ(Add(Said("arbitrator", 40, {{"TRACK", kLost}}, "the human drives")), "");
+  EXPECT_EQ(Add(Said("arbitrator", 50, {{"TRACK", kOk}})),
+            "step 50: arbitrator: TRACK ok again: as usual again");
 }
 
 TEST_F(FallbackLogTest, HasNoOpinionOfTheRecorderAndOfForeignPeers) {
