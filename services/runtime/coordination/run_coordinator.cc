@@ -23,10 +23,12 @@ constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the runner asks for it at this interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
 // In real time, a STATUS is refused if its step is more than this many steps above the number of
-// periods since the run began. One step is needed because a world that is started again takes its
-// first step immediately, and not one period after the last step of the earlier process. The other
-// step is a margin.
+// periods since the run began (NewestPossible()). We chose this margin.
 constexpr std::int64_t kEarly = 2;
+// The largest difference between the rates of two machines' clocks. Linux lets NTP change the rate
+// by 500 ppm at most (adjtimex(2)), and a crystal is off by less than 100 ppm. Two machines may
+// differ by twice the sum, 1200 ppm. We round up.
+constexpr double kClockDrift = 2e-3;
 
 std::optional<Role> RoleNamed(std::string_view name) {
   for (const RoleInfo& info : kRoles) {
@@ -274,8 +276,12 @@ void RunCoordinator::OnStatus(const status_t& heard) {
 
 std::int64_t RunCoordinator::NewestPossible(TimePoint now) const {
   if (!options_.realtime || options_.period == Duration::zero()) return options_.steps;
-  const Duration going = phase_ == Phase::kJoining ? Duration::zero() : now - going_since_;
-  return std::min(options_.steps, going / options_.period + kEarly);
+  const double going_s = phase_ == Phase::kJoining ? 0 : Seconds(now - going_since_);
+  const double periods = going_s * (1 + kClockDrift) / Seconds(options_.period);
+  // A world that is started again takes its first step immediately, and not one period after the
+  // last step of the earlier process.
+  const std::int64_t restarts = std::ssize(member(Role::kWorld).dead);
+  return std::min(options_.steps, static_cast<std::int64_t>(periods) + kEarly + restarts);
 }
 
 void RunCoordinator::OnDone() {

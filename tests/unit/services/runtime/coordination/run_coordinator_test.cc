@@ -255,6 +255,50 @@ TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) 
   EXPECT_EQ(coordinator.step(), 1);
 }
 
+TEST_F(RunCoordinatorTest, AllowsAWorldThatIsStartedAgainOneStepMore) {
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .steps = 500,
+                                                      .pace = 1,
+                                                      .realtime = true,
+                                                      .period = std::chrono::hours(1)});
+  BeAtStep(-1);
+  coordinator.Poll(Clock::now());
+  BeAtStep(2);
+  EXPECT_EQ(coordinator.step(), 2);
+  BeAtStep(3);
+  EXPECT_EQ(coordinator.step(), 2);
+  for (const std::int64_t step : {3, 4}) {
+    coordinator.MarkDead(Role::kWorld, role(Role::kWorld).pid, Clock::now());
+    Replace(Role::kWorld);
+    BeAtStep(step);
+    EXPECT_EQ(coordinator.step(), step);
+  }
+}
+
+TEST_F(RunCoordinatorTest, FollowsAWorldWhoseClockIsALittleFast) {
+  constexpr Duration kPeriod = std::chrono::microseconds(100);
+  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
+                                                      .scenario_text = script_.text(),
+                                                      .steps = 1'000'000,
+                                                      .pace = 1,
+                                                      .realtime = true,
+                                                      .period = kPeriod});
+  BeAtStep(-1);
+  coordinator.Poll(Clock::now());
+  const TimePoint begin = Clock::now();
+  // After this time a clock that is 1200 ppm fast is 12 periods ahead.
+  constexpr Duration kLong = milliseconds(1000);
+  while (Clock::now() < begin + kLong) {
+    const double periods = Seconds(Clock::now() - begin) / Seconds(kPeriod);
+    const auto step = static_cast<std::int64_t>(periods * (1 + 1200e-6));
+    role(Role::kWorld).header.step = step;
+    role(Role::kWorld).state = status_t::RUNNING;
+    SayStatus(Role::kWorld);
+    ASSERT_EQ(coordinator.step(), step);
+  }
+}
+
 TEST_F(RunCoordinatorTest, SaysWithTheCulpritWhyItCannotBeStartedAgain) {
   runtime::RunCoordinator hasty(script_.bus(), {.run_id = Script::kRunId,
                                                 .scenario_text = script_.text(),
