@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/runtime/transport/lcm_url.h"
+
 namespace fogline::runtime {
 
 std::optional<Announcement> RunSeeker::Look(TimePoint now) {
@@ -17,14 +19,19 @@ std::optional<Announcement> RunSeeker::Look(TimePoint now) {
                 [&](const Try& last) { return pauses_.HeldAgainst(last.at, now) >= kTryAgain; });
   if (tried_) return std::nullopt;
   for (const Announcement& run : runs) {
-    if (!run.Awaits(role_) || run.run_id == own_ ||
+    if (!run.Awaits(role_) || IsOwn(run) ||
         std::ranges::find(in_vain_, run.run_id, &Try::run_id) != in_vain_.end()) {
       continue;
     }
     tried_ = {.run_id = run.run_id, .at = now};
+    own_.reset();
     return run;
   }
   return std::nullopt;
+}
+
+bool RunSeeker::IsOwn(const Announcement& run) const {
+  return own_ && own_->run_id == run.run_id && SameNetwork(own_->url, run.url);
 }
 
 bool RunSeeker::InVain(TimePoint now) {

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/own_pauses.h"
 #include "services/runtime/discovery/beacon.h"
@@ -37,8 +38,11 @@ class RunSeeker {
   /// the role. If a later announcement says that the run waits again, the role has become free, and
   /// a new try can succeed.
   void GiveUp(TimePoint now);
-  /// From now on, Look() does not return this run, because the role already takes part in it.
-  void Ignore(std::int64_t run_id) { own_ = run_id; }
+  /// From now on, Look() does not return this run on this network, because the role already takes
+  /// part in it. A run that is resumed on another network is returned.
+  void Ignore(std::int64_t run_id, std::string_view url) {
+    own_ = {.run_id = run_id, .url = std::string(url)};
+  }
   /// Notes that the role has left this run and is still at the run's network.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
@@ -56,12 +60,18 @@ class RunSeeker {
     std::int64_t run_id;
     TimePoint at;
   };
+  struct OwnRun {
+    std::int64_t run_id;
+    std::string url;
+  };
+  bool IsOwn(const Announcement& run) const;
+
   Role role_;
   BeaconListener listener_;
   TimePoint began_;
   OwnPauses pauses_;
   std::optional<Try> tried_;
-  std::optional<std::int64_t> own_;
+  std::optional<OwnRun> own_;  // the run in which the role takes part
   std::deque<Try> in_vain_;
 };
 

@@ -203,7 +203,7 @@ class Service {
   /// run's network. (The node itself finds runs on the current network.)
   void SeekAnother(TimePoint now) {
     if (!MaySeek() || !OpenSeeker(now)) return;
-    seeker_->Ignore(*news().id);
+    seeker_->Ignore(*news().id, bus_->url());
     const auto run = seeker_->Look(now);
     if (!run) return;
     own().Release(fmt::format("went to run {}: the runner was silent", run->run_id));

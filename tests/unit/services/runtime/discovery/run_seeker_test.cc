@@ -49,6 +49,11 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
+TEST_F(RunSeekerTest, FindsTheRunOfItsRoleAgainIfItIsResumedOnAnotherNetwork) {
+  driver_.Ignore(7, "udpm://239.255.76.67:7701?ttl=0");
+  EXPECT_TRUE(Finds(begin_));
+}
+
 // The test gives the seeker times in steps of 0.4 s. The seeker would regard a longer step as a
 // pause of its own process.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
