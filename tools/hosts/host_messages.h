@@ -29,12 +29,12 @@ inline constexpr const char* kKill = "kill";  // process id of a role to kill
 
 // In both directions.
 inline constexpr const char* kPid = "pid";
-// A sign of life. The machine answers with a list of [process id, context switches].
+// A sign of life. The machine answers with a list of [process id, activity].
 inline constexpr const char* kAlive = "alive";
 
 /// The interval between two signs of life of the runner. After one or two seconds without a STATUS,
-/// the runner decides whether a process hangs. For this decision it compares two counts of the
-/// context switches of the process. Both counts must arrive within these one or two seconds.
+/// the runner decides whether a process hangs. For this decision it compares two values of the
+/// process's activity (RolePlace::ActivityOf()). Both must arrive within these one or two seconds.
 inline constexpr Duration kAliveEvery = milliseconds(250);
 
 }  // namespace fogline::hosts

@@ -95,6 +95,9 @@ void ProcessGroup::ReadOutput(Process& process) {
 std::optional<std::int64_t> OwnActivityOf(pid_t pid) {
   std::ifstream status(fmt::format("/proc/{}/status", pid));
   std::int64_t sum = 0;
+  // A process that only computes, alone on its core, may have no context switch for seconds. The
+  // first number of schedstat is the processor time of its main thread, in ns.
+  std::ifstream(fmt::format("/proc/{}/schedstat", pid)) >> sum;
   bool known = false;
   for (std::string key; status >> key;) {
     if (!key.ends_with("voluntary_ctxt_switches:")) continue;

@@ -175,7 +175,7 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   if (!InSight(child) || silent < limit / 2 || !child.killed_for.empty()) return;
   if (!child.activity) child.activity = child.place->ActivityOf(child.pid);
   if (silent < limit) return;
-  // A process with new context switches still runs. Perhaps it works, but its messages are lost.
+  // A process that is active still runs. Perhaps it works, but its messages are lost.
   const bool runs = child.place->ActivityOf(child.pid) != child.activity;
   const std::string& host = child.place->name();
   if (runs && !met && !host.empty()) {

@@ -26,8 +26,7 @@ namespace fogline::runner {
 class Supervisor {
  public:
   /// A process that prepares for the run may send no STATUS, for example while SUMO loads its
-  /// network. For this time it does not count as hanging if it has new context switches, because
-  /// they show that it still runs.
+  /// network. For this time it does not count as hanging if it is active (RolePlace::ActivityOf()).
   static constexpr Duration kPrepareLimit = milliseconds(60'000);
 
   struct Options {
@@ -69,7 +68,7 @@ class Supervisor {
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // context switches at half of the silence limit
+    std::optional<std::int64_t> activity{};  // ActivityOf() at half of the silence limit
     std::string killed_for{};                // the reason why the supervisor killed the process
     bool deaf = false;                       // whether it was killed because it was deaf
     std::string death{};                     // how the role's last process ended

@@ -86,6 +86,27 @@ TEST(ProcessGroupTest, KillsOneOfItsProcesses) {
   group.Kill(getpid());  // this process is not in the group, so it goes on
 }
 
+TEST(ProcessGroupTest, HasActivityWhileAProcessComputesAndNoneWhileItIsStopped) {
+  ProcessGroup group;
+  const pid_t pid = StartScript(group, Role::kWorld, "while :; do :; done");
+  const auto pause = [] { std::this_thread::sleep_for(milliseconds(300)); };
+  // The subject of the test is what happens within a pause.
+  for (int i = 0; i < 3; ++i) {
+    const auto before = group.ActivityOf(pid);
+    ASSERT_TRUE(before);
+    pause();
+    EXPECT_GT(group.ActivityOf(pid), before);
+  }
+  kill(pid, SIGSTOP);
+  pause();
+  const auto stopped = group.ActivityOf(pid);
+  pause();
+  EXPECT_EQ(group.ActivityOf(pid), stopped);
+  group.Kill(pid);
+  CollectUntil(group, 1);
+  EXPECT_FALSE(group.ActivityOf(pid));
+}
+
 TEST(ProcessGroupTest, EndsWithItsProcesses) {
   pid_t pid = 0;
   {
