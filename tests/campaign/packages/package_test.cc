@@ -19,6 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Makes the packages once for all suites.
 class PackageTest : public testing::Test {
@@ -204,6 +205,13 @@ TEST_F(UnitTest, HasNoLimitThatShortRunsOrRealTimeWouldReach) {
   EXPECT_THAT(text, HasSubstr("\nStartLimitIntervalSec=0\n"));
   EXPECT_THAT(text, HasSubstr("\nLimitRTPRIO=2\n"));
   EXPECT_THAT(text, HasSubstr("\nLimitMEMLOCK=infinity\n"));
+}
+
+// A role that is started while the network is away ends with exit code 2.
+TEST_F(UnitTest, StartsARoleAgainWhateverItsExitCode) {
+  const std::string text = Content(unit_);
+  EXPECT_THAT(text, HasSubstr("\nRestart=always\n"));
+  EXPECT_THAT(text, Not(HasSubstr("\nRestartPreventExitStatus=")));
 }
 
 TEST_F(UnitTest, StartsARoleThatTakesPartInARun) {
