@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/transport/lcm_url.h"
 #include "tools/watch/announced.h"
 #include "tools/watch/senders/senders_report.h"
 #include "tools/watch/traffic_text.h"
@@ -98,7 +99,9 @@ void LiveView::Hear(std::string_view channel, runtime::Bytes bytes) {
 }
 
 void LiveView::Handle() {
+  const std::string heard = network_.url();
   network_.Handle(Clock::now());
+  if (!runtime::SameNetwork(heard, network_.url())) tracker_.LeaveNetwork();
   network_.ForgetNames(statistics_.front().unknown_names());
   TellNews();
   PumpAll();

@@ -40,7 +40,7 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
   run_t run{};
   if (!runtime::Decode(bytes, run) || run.num_parts > kMostParts) return;
   if (only_ && run.header.run_id != *only_) return;
-  const bool free = !run_id_ || stopped_ || now - heard_ > kSilent;
+  const bool free = !run_id_ || stopped_ || left_ || now - heard_ > kSilent;
   if (run_id_ != run.header.run_id) {
     if (!free || run.phase == run_t::STOP) return;
     Begin(run);
@@ -94,6 +94,7 @@ void RunTracker::Begin(const run_t& run) {
   person_ = {};
   ForgetEvents();
   newest_ = -1;
+  left_ = false;
   may_begin_again_ = false;
   offered_ = false;
 }

@@ -31,6 +31,10 @@ class RunTracker {
   /// Takes a message. @param channel index of the channel in kChannels
   void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
 
+  /// Notes that the network of the followed run is heard no more. So the tracker follows the next
+  /// run whose RUN comes.
+  void LeaveNetwork() { left_ = true; }
+
   /// The followed run; nullopt before the first run.
   std::optional<std::int64_t> followed() const { return run_id_; }
   /// The last run whose scenario is complete; nullopt if there is none.
@@ -63,6 +67,7 @@ class RunTracker {
   std::optional<std::int64_t> only_;
   TimePoint heard_{};
   bool stopped_ = false;
+  bool left_ = false;  // whether the network of the followed run is heard no more
   // Whether an old step means that the run is being played again. This is the case after the end of
   // the run, and after a silence of all its processes. Otherwise an old step is a repair: a role
   // that was started again asks for all steps from the first one on.

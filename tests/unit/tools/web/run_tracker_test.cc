@@ -109,6 +109,18 @@ TEST(RunTrackerTest, LeavesARunThatIsSilent) {
   EXPECT_EQ(tracker.run()->run_id, 6);
 }
 
+TEST(RunTrackerTest, LeavesARunWhoseNetworkIsHeardNoMore) {
+  RunTracker tracker;
+  Speaker first(tracker, 5), second(tracker, 6);
+  first.AllParts(kBegin);
+  tracker.LeaveNetwork();
+  EXPECT_EQ(tracker.run()->run_id, 5) << "shown until the next run comes";
+  second.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+  first.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+}
+
 TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
   RunTracker tracker;
   Speaker own(tracker, 5), other(tracker, 6);
