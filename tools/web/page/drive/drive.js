@@ -96,7 +96,7 @@ class Drive {
     });
     for (const [id, button] of [["take-over", "take_over"], ["give-back", "give_back"]]) {
       byId(id).addEventListener("click", ({timeStamp}) => {
-        this.person.press(button, timeStamp);
+        this.person.press(button, timeStamp, performance.now());
         this.pump();
       });
     }
@@ -145,7 +145,7 @@ class Drive {
     if (down && target.matches?.("input, select, textarea")) return;
     // A repeated event belongs to a key that was pressed before, perhaps while the person was away.
     // So it moves no pedal.
-    if (!repeat && !this.person.key(key, down, timeStamp)) return;
+    if (!repeat && !this.person.key(key, down, timeStamp, performance.now())) return;
     event.preventDefault();  // the arrows would scroll
     if (repeat) return;
     this.alarm.allow();

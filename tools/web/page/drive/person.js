@@ -97,9 +97,11 @@ export class Person {
   /**
    * Handles a change of a key.
    * @param down whether the key is pressed
+   * @param at_ms time of the change
+   * @param now_ms present time; a busy page handles a change late
    * @return whether the page uses the key
    */
-  key(key, down, now_ms) {
+  key(key, down, at_ms, now_ms = at_ms) {
     // While the person is away, keys are ignored. When the person comes back, all keys count as
     // released.
     if (this.whyAway() !== "") return false;
@@ -108,23 +110,26 @@ export class Person {
     if (pedal) {
       if (this.device.kind !== "keyboard") return false;
       if (this.ramps.held[pedal] === down) return true;  // the keyboard repeats a key
-      this.ramps.hold(pedal, down, now_ms);
+      this.ramps.hold(pedal, down, at_ms);
     } else if (button) {
       if (this.down.has(button) === down) return true;
-      if (down) this.press(button, now_ms);
+      if (down) this.press(button, at_ms, now_ms);
       if (down) this.down.add(button);
       else this.down.delete(button);
     } else {
       return false;
     }
-    this.touched_ms = now_ms;
+    this.touched_ms = at_ms;
     return true;
   }
 
-  /** Takes a click on a button of the page, or the beginning of a press of a key. */
-  press(button, now_ms) {
+  /**
+   * Takes a click on a button of the page, or the beginning of a press of a key. The shortest press
+   * lasts from the present time on, so that it is sent even if the page handles it late.
+   */
+  press(button, at_ms, now_ms = at_ms) {
     this.until_ms[button] = now_ms + LEAST_PRESS_MS;
-    this.touched_ms = now_ms;
+    this.touched_ms = at_ms;
   }
 
   /** Takes the states of all gamepads (navigator.getGamepads()). */

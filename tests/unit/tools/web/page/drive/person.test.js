@@ -77,6 +77,17 @@ test("a short press of a button lasts long enough for two messages", () => {
   assert.deepEqual(person.input(430).buttons, []);
 });
 
+test("a short press that a busy page handles late lasts as long", () => {
+  const person = ready();
+  person.key("t", true, 100, 400);
+  person.key("t", false, 110, 400);
+  assert.equal(person.touched_ms, 110);
+  assert.deepEqual(person.input(500).buttons, ["take_over"]);
+  person.press("give_back", 600, 900);
+  assert.equal(person.touched_ms, 600);
+  assert.deepEqual(person.input(1000).buttons, ["give_back"]);
+});
+
 test("a hidden page, a blurred one, a dialog and a lost seat leave the pedals at once", () => {
   for (const [name, away, why] of [["visible", false, "hidden"], ["focused", false, "blurred"],
                                    ["busy", true, "busy"], ["seated", false, "no seat"],
