@@ -33,7 +33,10 @@ class Track {
     this.bytes += bytes.byteLength;
   }
 
-  forgetBefore(time) { this.forgetFirst(upTo(this.times, time) + 1); }
+  forgetBefore(time) {
+    const kept = this.times.findIndex((one) => one >= time);
+    this.forgetFirst(kept < 0 ? this.times.length : kept);
+  }
 
   forgetFirst(n) {
     for (const bytes of this.messages.splice(0, n)) this.bytes -= bytes.byteLength;
@@ -176,7 +179,9 @@ export class LiveStore {
     if (oldest <= this.firstTime) return;
     for (const track of this.tracks.values()) track.forgetBefore(oldest);
     for (const {series} of this.wanted.values()) series.forgetBefore(oldest);
-    this.firstStep = Math.ceil(oldest / this.step_s);
+    const firstSteps = [...this.tracks.values()].filter(({channel}) => channel.isStepwise)
+      .map(({steps}) => steps[0] ?? Infinity);
+    this.firstStep = Math.min(...firstSteps);
   }
 
   /**
