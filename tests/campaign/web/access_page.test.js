@@ -15,6 +15,16 @@ test("the key of the printed address opens the page, and leaves the address", as
   await shows(page, 0);
 });
 
+test("a link with the key of the page leads to its step", async (t) => {
+  const log = recordedRun(scratch(t));
+  const address = await view(t, [log, "--listen", "127.0.0.1"]);
+  const page = await open(t, await browser(t), address);
+  await shows(page, 0);
+  await page.evaluate((link) => { location.href = link; }, `${address}&step=190`);
+  await shows(page, 190);
+  assert.ok(!page.url().includes("token"), page.url());
+});
+
 test("a page without the key says what is missing", async (t) => {
   const log = recordedRun(scratch(t));
   const address = await view(t, [log, "--listen", "127.0.0.1"]);

@@ -347,3 +347,26 @@ test("cars do not glide between steps for readers who want no motion", async (t)
   });
   assert.deepEqual(new Set(glides), new Set([0]));
 });
+
+test("a page that connects again keeps its step and the fog, however late the log is described", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await goTo(page, 190);
+  await page.evaluate(() => {
+    const {receive} = foglinePage;
+    const held = [];
+    foglinePage.receive = (object) => {
+      if (object.op === "hello") setTimeout(() => {
+        for (const one of held) receive.call(foglinePage, one);
+        foglinePage.receive = receive;
+        window.isConnectedAgain = true;
+      }, 500);
+      if (object.op === "hello") receive.call(foglinePage, object);
+      else held.push(object);
+    };
+    foglinePage.wire.socket.close();
+  });
+  await page.waitForFunction(() => window.isConnectedAgain);
+  await shows(page, 190);
+  await page.waitForFunction(() => foglinePage.why.fog?.length > 0);
+});

@@ -83,7 +83,7 @@ class Page {
       // address in the event.
       const {hash} = new URL(newURL);
       const {step, run, token} = readFragment(hash);
-      if (token) this.takeNewToken(hash);
+      if (token) this.takeToken(hash);
       else if (step !== null && this.store) this.goToLinked({step, run});
     });
     byId("parts").addEventListener("click", (event) => {
@@ -95,13 +95,13 @@ class Page {
   }
 
   /**
-   * Connects with a new token. Called when the reader pastes the address of a server that was
-   * started again.
+   * Connects with a new token, when the reader pastes the address of a server that was started
+   * again. If the address has the present token, goes to its step.
    */
-  takeNewToken(hash) {
+  takeToken(hash) {
     this.link = readFragment(hash);
     this.token = takeToken(hash);
-    this.wire.moveTo(socketUrl(location, this.token));
+    if (!this.wire.moveTo(socketUrl(location, this.token)) && this.store) this.openLink();
   }
 
   actions() {
@@ -313,7 +313,8 @@ class Page {
     requestAnimationFrame((next) => this.loop(next));
     const passed_s = Math.min(0.25, (now - (this.before ?? now)) / 1000);
     this.before = now;
-    if (!this.store || this.why.charts.length === 0) return;
+    // After a new hello, the charts of the page before are there until the log or the run comes.
+    if (!this.store || this.why.charts.length === 0 || !(this.isLive || this.log)) return;
     this.budget.frame(now);
     if (this.store.generation !== this.generation) this.build();
     const played = this.clock.state === "playing";

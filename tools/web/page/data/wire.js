@@ -96,9 +96,12 @@ export class Wire {
     this.socket.onclose = ({code}) => this.lose(code);
   }
 
-  /** Connects to another address, such as an address with a new token. */
+  /**
+   * Connects to another address, such as an address with a new token.
+   * @return false if the address is the present one
+   */
   moveTo(url) {
-    if (url === this.url) return;
+    if (url === this.url) return false;
     this.url = url;
     clearTimeout(this.retrying);
     this.retry_ms = RETRY_MS.first;
@@ -107,6 +110,7 @@ export class Wire {
     old.close();
     this.rejectAll();
     this.connect();
+    return true;
   }
 
   rejectAll() {
