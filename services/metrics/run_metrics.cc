@@ -81,7 +81,10 @@ void MetricsAccumulator::AddAuthority(const Sample& sample) {
   if (HumanIsEngaged(previous_->lambda_human)) {
     metrics_.human_time_s += sample.time_s - previous_->time_s;
   }
-  if (sample.lambda_human != previous_->lambda_human) authority_changed_s_ = sample.time_s;
+  if (sample.lambda_human != previous_->lambda_human ||
+      sample.lambda_automation != previous_->lambda_automation) {
+    authority_changed_s_ = sample.time_s;
+  }
   if (HumanDrives(sample.lambda_human) != HumanDrives(previous_->lambda_human)) AddTransfer(sample);
 }
 

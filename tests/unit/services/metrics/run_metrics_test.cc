@@ -215,6 +215,14 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 4);
 }
 
+TEST(MeasureTest, JerkOfAHandOverAlsoFollowsTheBeginOfAMinimalRiskManoeuvre) {
+  auto run = QuietRun(6);
+  for (metrics::Sample& sample : run) sample.lambda_automation = 1;
+  for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_automation = 0;
+  for (std::size_t k = 4; k < run.size(); ++k) run[k].host_acceleration_mps2 = -2;
+  EXPECT_EQ(metrics::Measure(run).max_handover_jerk_mps3, 2 / kStep_s);
+}
+
 TEST(MeasureTest, MeasuresBothPairsOfCars) {
   auto run = QuietRun(3);
   for (metrics::Sample& sample : run) {
