@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/json.h"
+#include "services/input_state.h"
 #include "tools/watch/traffic_text.h"
 
 namespace fogline::watch {
@@ -46,6 +47,8 @@ Json RoleJson(const RoleView& role) {
             {"silent", role.silent},
             {"waiting_for", status.waiting_for},
             {"waiting_ms", status.waiting_ms},
+            {"fallback", status.fallback},
+            {"inputs", Json::object()},
             {"repairs_asked", status.repairs_asked},
             {"repairs_served", status.repairs_served},
             {"duplicates", status.duplicates},
@@ -56,6 +59,9 @@ Json RoleJson(const RoleView& role) {
             {"cpu_ms", status.cpu_ms},
             {"rss_bytes", status.rss_bytes},
             {"error", status.error}};
+  for (std::size_t i = 0; i < status.input.size(); ++i) {
+    json["inputs"][status.input[i]] = NameOf(static_cast<InputState>(status.input_state[i]));
+  }
   for (const runtime::RefusalKind& kind : runtime::kRefusals) {
     if (status.*kind.counter != 0) json["refused"][std::string(kind.key)] = status.*kind.counter;
   }
@@ -73,6 +79,7 @@ Json RunJson(const RunView& run) {
             {"step", run.step},
             {"phase", run.phase ? Json(PhaseName(*run.phase)) : Json(nullptr)},
             {"pace", run.pace},
+            {"realtime", run.realtime},
             {"scenario_hash", run.scenario_hash},
             {"channels", ChannelsJson(run.channels)},
             {"roles", Json::array()}};

@@ -38,7 +38,7 @@ struct ChannelView {
 
 /// A role according to its last STATUS.
 struct RoleView {
-  status_t status;
+  status_t status{};
   std::optional<double> cpu_percent;  // use of one processor; nullopt before the second reading
   double age_s = 0;                   // age of the last STATUS
   bool silent = false;                // whether the last STATUS is older than kSilent

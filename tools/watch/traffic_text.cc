@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "common/text.h"
+#include "tools/watch/health_text.h"
 #include "tools/watch/role_cell.h"
 
 namespace fogline::watch {
@@ -76,47 +77,22 @@ Line RoleHeading() {
           Line::Style::kHeading};
 }
 
-/// Problems of a role, and the inputs for which it waits.
-std::string Remarks(const RoleView& role) {
-  std::string text;
-  const auto add = [&text](const std::string& remark) {
-    text += (text.empty() ? "" : "; ") + remark;
-  };
+Line RoleLine(const RoleView& role, bool realtime) {
   const status_t& status = role.status;
-  if (role.silent) add("silent");
-  if (!status.error.empty()) add(Printable(status.error));
-  if (!status.waiting_for.empty()) {
-    add(fmt::format("waits for {} for {:.1f} s", Printable(status.waiting_for),
-                    kMilli * static_cast<double>(status.waiting_ms)));
-  }
-  for (const runtime::RefusalKind& kind : runtime::kRefusals) {
-    const std::int64_t count = status.*kind.counter;
-    if (count != 0) add(fmt::format("refused {} {}", count, kind.what));
-  }
-  if (status.sends_failed != 0) {
-    add(fmt::format("could not send {} ({})", status.sends_failed, Printable(status.send_error)));
-  }
-  return text;
-}
-
-Line RoleLine(const RoleView& role) {
-  const status_t& status = role.status;
-  const bool bad = role.silent || status.state == status_t::FAILED;
   return {
-      fmt::format(kRoleRow, RoleCell(Printable(status.role)), StateName(status.state),
-                  status.header.step, status.repairs_asked, status.repairs_served,
-                  Number(role.cpu_percent, 1, 1),
-                  Number(static_cast<double>(status.rss_bytes), kMega, 1), Number(role.age_s, 1, 1),
-                  fmt::format("{}@{}", status.pid, Printable(status.host)), Remarks(role)),
-      bad ? Line::Style::kBad : Line::Style::kPlain};
+      fmt::format(
+          kRoleRow, RoleCell(Printable(status.role)), StateName(status.state), status.header.step,
+          status.repairs_asked, status.repairs_served, Number(role.cpu_percent, 1, 1),
+          Number(static_cast<double>(status.rss_bytes), kMega, 1), Number(role.age_s, 1, 1),
+          fmt::format("{}@{}", status.pid, Printable(status.host)), RemarksText(role, realtime)),
+      IsUnwell(role) ? Line::Style::kBad : Line::Style::kPlain};
 }
 
 Line RunHeading(const RunView& run) {
   std::string text = fmt::format("run {}", run.run_id);
   if (run.step >= 0) text += fmt::format("  step {}", run.step);
   if (run.phase) {
-    text += fmt::format("  {}  {}  scenario {}", PhaseName(*run.phase),
-                        run.pace > 0 ? fmt::format("pace {:g}", run.pace) : "as fast as it goes",
+    text += fmt::format("  {}  {}  scenario {}", PhaseName(*run.phase), SpeedText(run),
                         Printable(run.scenario_hash.substr(0, kHashShown)));
   }
   return {text, Line::Style::kHeading};
@@ -149,7 +125,7 @@ std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
     if (!run.channels.empty()) lines.push_back(ChannelHeading());
     for (const ChannelView& channel : run.channels) lines.push_back(ChannelLine(channel));
     if (!run.roles.empty()) lines.push_back(RoleHeading());
-    for (const RoleView& role : run.roles) lines.push_back(RoleLine(role));
+    for (const RoleView& role : run.roles) lines.push_back(RoleLine(role, run.realtime));
   }
   if (!view.others.empty()) {
     lines.push_back({});

@@ -9,9 +9,9 @@
 
 #include "common/text.h"
 #include "tools/watch/announced.h"
+#include "tools/watch/health_text.h"
 #include "tools/watch/role_cell.h"
 #include "tools/watch/screen/field_lines.h"
-#include "tools/watch/screen/health_text.h"
 #include "tools/watch/senders/senders_report.h"
 
 namespace fogline::watch {
@@ -76,10 +76,7 @@ double SenderNumber(const SenderView& sender, std::size_t column) {
 constexpr const char* kRoleColumns = " {}{:<8}{:>6}{:>6}{:>6}  {}";
 
 TopRow RoleRow(const RunView& run, const RoleView& role) {
-  std::string remarks;
-  for (const std::string& remark : RemarksOn(role, run.realtime)) {
-    remarks += (remarks.empty() ? "" : "; ") + remark;
-  }
+  const std::string remarks = RemarksText(role, run.realtime);
   return {.line = {fmt::format(kRoleColumns, RoleCell(Printable(role.status.role)),
                                StateName(role.status.state), role.status.header.step,
                                role.cpu_percent ? fmt::format("{:.1f}", *role.cpu_percent) : "-",
@@ -122,10 +119,7 @@ std::string RunText(const RunView& run) {
   std::string text = fmt::format("run {}", run.run_id);
   if (run.step >= 0) text += fmt::format("  step {}", run.step);
   if (run.phase) {
-    text += fmt::format("  {}  {}", PhaseName(*run.phase),
-                        run.realtime   ? fmt::format("real time x{:g}", run.pace)
-                        : run.pace > 0 ? fmt::format("pace {:g}", run.pace)
-                                       : "full speed");
+    text += fmt::format("  {}  {}", PhaseName(*run.phase), SpeedText(run));
   }
   const std::string drives = WhoDrives(run);
   return drives.empty() ? text : text + "  " + drives;

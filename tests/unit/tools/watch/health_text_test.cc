@@ -1,4 +1,4 @@
-#include "tools/watch/screen/health_text.h"
+#include "tools/watch/health_text.h"
 
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "tools/watch/screen/health_text.h"
+#include "tools/watch/health_text.h"
 
 #include <algorithm>
 
@@ -67,6 +67,19 @@ std::vector<std::string> RemarksOn(const RoleView& role, bool realtime) {
   }
   AddIfAny(status.repairs_asked, "repairs asked", remarks);
   return remarks;
+}
+
+std::string RemarksText(const RoleView& role, bool realtime) {
+  std::string text;
+  for (const std::string& remark : RemarksOn(role, realtime)) {
+    text += (text.empty() ? "" : "; ") + remark;
+  }
+  return text;
+}
+
+std::string SpeedText(const RunView& run) {
+  if (run.realtime) return fmt::format("real time x{:g}", run.pace);
+  return run.pace > 0 ? fmt::format("pace {:g}", run.pace) : "full speed";
 }
 
 bool IsUnwell(const RoleView& role) {
