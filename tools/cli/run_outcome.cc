@@ -17,20 +17,6 @@
 namespace fogline::cli {
 namespace {
 
-/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
-/// @throws std::runtime_error if the log of a run in real time lacks published messages
-int Ended(const runner::RunResult& result, std::string_view verb) {
-  if (result.realtime && result.realtime->unlogged_messages > 0) {
-    throw std::runtime_error(fmt::format(
-        "the log is not complete: it lacks at least {} messages that were published; the recorder "
-        "heard nothing for longer than the {} steps that it can ask for again",
-        result.realtime->unlogged_messages, runtime::kMaxAhead));
-  }
-  if (!result.verification || result.verification->Holds()) return kDone;
-  Complain(fmt::format("fogline {}: error: {}", verb, result.verification->Trouble()));
-  return kCheckFailed;
-}
-
 nlohmann::ordered_json VerificationJson(const replay::Verification& verification) {
   nlohmann::ordered_json json{{"same", nullptr},
                               {"roles", nlohmann::ordered_json::array()},
@@ -80,6 +66,18 @@ std::string RemarksText(const RunOutcome& outcome) {
 }
 
 }  // namespace
+
+int EndOf(const runner::RunResult& result, std::string_view verb) {
+  if (result.realtime && result.realtime->unlogged_messages > 0) {
+    throw std::runtime_error(fmt::format(
+        "the log is not complete: it lacks at least {} messages that were published; the recorder "
+        "heard nothing for longer than the {} steps that it can ask for again",
+        result.realtime->unlogged_messages, runtime::kMaxAhead));
+  }
+  if (!result.verification || result.verification->Holds()) return kDone;
+  Complain(fmt::format("fogline {}: error: {}", verb, result.verification->Trouble()));
+  return kCheckFailed;
+}
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
   const runner::RunResult& result = outcome.result;
@@ -170,7 +168,7 @@ int PrintOutcome(const RunOutcome& outcome, bool json, std::string_view verb) {
   } else {
     fmt::print("{}", ToText(outcome));
   }
-  return Ended(outcome.result, verb);
+  return EndOf(outcome.result, verb);
 }
 
 }  // namespace fogline::cli

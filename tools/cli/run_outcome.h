@@ -25,6 +25,11 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome);
 /// Several lines, the most important line first.
 std::string ToText(const RunOutcome& outcome);
 
+/// The exit code of a run that has ended. If it is not kDone, the reason is printed on stderr.
+/// @param verb name of the verb, for the text of an error
+/// @throws std::runtime_error if the log of a run in real time lacks published messages
+int EndOf(const runner::RunResult& result, std::string_view verb);
+
 /// Prints the outcome of a run on stdout, and the reason of a failure on stderr.
 /// @param verb name of the verb, for the text of an error
 /// @return the exit code

@@ -244,10 +244,7 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
 /// called for a log, because a log needs no key. So the variable may also be set if a log is shown.
 /// @throws InputError
 std::optional<runtime::SigningKey> KeyOf(const ViewArguments& arguments) {
-  runtime::TrafficOptions traffic = arguments.traffic;
-  const char* const variable = std::getenv(runtime::kKeyVariable);
-  if (traffic.key_file.empty() && variable != nullptr) traffic.key_file = variable;
-  return runtime::KeyOf(traffic);
+  return runtime::KeyOf(runtime::WithKeyOfEnvironment(arguments.traffic));
 }
 
 /// Checks that this build has a page for a browser. If the page is missing, but the user wants no

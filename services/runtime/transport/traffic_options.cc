@@ -38,6 +38,12 @@ struct Treatment {
 
 }  // namespace
 
+TrafficOptions WithKeyOfEnvironment(TrafficOptions options) {
+  const char* const variable = std::getenv(kKeyVariable);
+  if (options.key_file.empty() && variable != nullptr) options.key_file = variable;
+  return options;
+}
+
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SigningKey::Load(options.key_file);
   // A user who sets the variable wants signatures. An empty variable may come from a script that

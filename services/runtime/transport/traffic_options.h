@@ -19,6 +19,10 @@ struct TrafficOptions {
 /// The environment variable that names the key's file if --key does not.
 inline constexpr const char* kKeyVariable = "FOGLINE_KEY";
 
+/// The options, with the key's file of FOGLINE_KEY if they name none. For a program that does not
+/// read the variable with its options.
+TrafficOptions WithKeyOfEnvironment(TrafficOptions options);
+
 /// The key; nullopt if the options name no key.
 /// @throws InputError when the key's file is wrong, or FOGLINE_KEY is set but empty
 std::optional<SigningKey> KeyOf(const TrafficOptions& options);

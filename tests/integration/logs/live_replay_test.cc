@@ -58,6 +58,16 @@ TEST_F(LiveReplayTest, OfUnchangedRolesIsTheRecordedRun) {
   EXPECT_EQ(live["track"]["distance_m"]["rms"], 0);
 }
 
+TEST_F(LiveReplayTest, SignsItsMessagesIfTheVariableNamesAKey) {
+  const std::string key = folder_.File("key");
+  ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
+  const Outcome outcome = RunCommand({"env", "FOGLINE_KEY=" + key, Program("fogline"), "replay",
+                                      log_, "--live", "--log", live_, "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["digest"], digest_);
+  EXPECT_EQ(RunCommand({Program("fogline"), "digest", live_, "--key", key}).code, 0);
+}
+
 TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
   // GIVEN the recorded sensors and a fusion that trusts the radar less
   const nlohmann::json live =

@@ -15,12 +15,15 @@
 #include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/traffic_options.h"
 #include "services/runtime/wire/scenario_parts.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/logs/log_reading.h"
 #include "tools/cli/logs/new_log.h"
 #include "tools/cli/measures/run_text.h"
+#include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/replay/live/live_roles.h"
 #include "tools/replay/live/track_difference.h"
@@ -44,8 +47,8 @@ Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMe
   if (scenario.steps < 1) cli::RefuseLog(log, "the log has no step");
   if (scenario.person.drives) {
     cli::RefuseLog(log,
-                   "a person drove in this run: set /person/drives=false, or record the commands "
-                   "with --channels DRIVER_COMMAND");
+                   "a person drove in this run: give --set /person/drives=false; with --channels "
+                   "DRIVER_COMMAND the commands of the person then come from the log");
   }
   runner::CheckPossible(scenario, log);
   return scenario;
@@ -92,7 +95,8 @@ LiveReplay::LiveReplay(CLI::App& verb) {
       ->allow_extra_args(false);
   add("--log", log_, "Event log of the new run (default: logs/NAME-N.lcm)");
   verb.add_flag("--force", force_, "Replace this log if it exists")->needs(live);
-  add("--transport", transport_, "udpm, tcpq or an LCM URL")->capture_default_str();
+  add("--transport", transport_,
+      "udpm, tcpq or an LCM URL (default: $LCM_DEFAULT_URL, if set, else udpm)");
   CLI::Option* realtime =
       verb.add_flag("--realtime", realtime_,
                     "Run on the wall clock; messages that the log lacks are missing in the run")
@@ -101,6 +105,11 @@ LiveReplay::LiveReplay(CLI::App& verb) {
       ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed))
       ->needs(realtime);
   verb.add_flag("--quiet", quiet_, "Print only errors on stderr")->needs(live);
+}
+
+std::string LiveReplay::Transport() const {
+  if (!transport_.empty()) return transport_;
+  return runtime::UrlOfEnvironment().value_or("udpm");
 }
 
 int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
@@ -121,7 +130,9 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   }
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
   runner::RunOptions options;
-  options.transport = transport_;
+  options.transport = Transport();
+  options.traffic = runtime::WithKeyOfEnvironment({});
+  runtime::Check(options.traffic);
   cli::RequireProcesses(options, "a live replay");
   if (realtime_) {
     const double of_log = run.realtime ? run.realtime->speed : 1;
@@ -162,7 +173,8 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
                result.realtime ? cli::RealtimeText(*result.realtime) : "", PathText(options.log));
   }
   cli::SayAboutLog(recorded, run);
-  return run.complete ? kDone : kCheckFailed;
+  const int code = cli::EndOf(result, "replay");
+  return code == kDone && !run.complete ? kCheckFailed : code;
 }
 
 }  // namespace fogline

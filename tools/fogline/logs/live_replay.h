@@ -10,8 +10,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "services/runtime/transport/traffic_options.h"
-
 namespace fogline {
 
 class LiveReplay {
@@ -28,12 +26,14 @@ class LiveReplay {
           bool json) const;
 
  private:
+  std::string Transport() const;
+
   bool live_ = false;
   std::string channels_ = "RADAR,LIDAR";
   std::vector<std::string> overrides_;
   std::filesystem::path log_;
   bool force_ = false;
-  std::string transport_ = "udpm";
+  std::string transport_;  // "": the default
   bool realtime_ = false;
   double speed_ = 0;  // 0: the speed of the recorded run
   bool quiet_ = false;
