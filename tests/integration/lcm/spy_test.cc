@@ -200,6 +200,32 @@ TEST_F(SpyAtMeetingTest, WaitsForARunAndLooksWhereItIs) {
       testing::EndsWith(" lcm.spy.Spy --lcm-url=" + err.substr(at, err.find('\n') - at) + "\n"));
 }
 
+TEST_F(SpyAtMeetingTest, LooksAtTheNewestOfSeveralRuns) {
+  const ScratchFolder folder;
+  const auto command = [&folder](const std::string& log) {
+    return std::vector<std::string>{Program("fogline"),
+                                    "run",
+                                    "scenario/paper.json",
+                                    "--transport",
+                                    "udpm",
+                                    "--pace",
+                                    "1",
+                                    "--log",
+                                    folder.File(log)};
+  };
+  Background older(command("older.lcm"));
+  ASSERT_TRUE(older.WaitForErr("processes: ", kPatience)) << older.Err();
+  Background newer(command("newer.lcm"));
+  ASSERT_TRUE(newer.WaitForErr("processes: ", kPatience)) << newer.Err();
+  const std::string err = newer.Err();
+  const std::size_t at = err.find(" on ") + 4;
+  const std::string url = err.substr(at, err.find('\n') - at);
+  for (int k = 0; k < 4; ++k) {
+    const Outcome spy = RunCommand(parts_.Command(Program("fogline"), {}));
+    EXPECT_THAT(spy.out, HasSubstr(" --lcm-url=" + url + "\n"));
+  }
+}
+
 TEST_F(SpyAtMeetingTest, LooksAtTheMeetingAddressWhereThereIsTraffic) {
   runtime::Bus bus(url_);
   Background spy(parts_.Command(Program("fogline"), {}));

@@ -86,8 +86,8 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
 /// Waits for traffic that can be shown. @return the network of this traffic
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
-  // Time within which an announced run is found. An announced run takes precedence over other
-  // traffic.
+  // In this time every announced run is found, so the newest one is known. An announced run takes
+  // precedence over other traffic.
   constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
   constexpr Duration kLookEvery = milliseconds(50);
   runtime::Bus bus(arguments.network.Url());
@@ -102,12 +102,12 @@ std::string FindNetwork(const SpyArguments& arguments) {
     bus.Wait(kLookEvery);
     bus.Drain();
     beacons.Look();
+    const Duration waited = Clock::now() - began;
+    if (waited < kDiscovery) continue;
     if (const auto runs = beacons.Runs(); !runs.empty()) {
       Notice(runs.front().Text());
       return runs.front().url;
     }
-    const Duration waited = Clock::now() - began;
-    if (waited < kDiscovery) continue;
     if (traffic) return bus.url();
     if (!std::exchange(said, true)) {
       Notice(fmt::format("waiting for a run on {}; start one with: fogline run SCENARIO --pace 1",
