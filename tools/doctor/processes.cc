@@ -121,11 +121,15 @@ void ExamineProcesses(Findings& findings) {
     // line for all its roles.
     if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
   }
-  for (const auto& [runner, roles] : runs) {
+  for (const auto& [runner, children] : runs) {
+    // A runner also starts programs that are no roles: a relay, and the page of a log.
+    const auto role = std::ranges::find_if(
+        children, [](const Process* child) { return !child->Option("--run-id").empty(); });
+    if (role == children.end()) continue;
     findings.push_back(
         {"processes", Level::kOk,
          fmt::format("{} has a run with {} processes on {}", processes.at(runner).Describe(),
-                     roles.size(), roles.front()->Option("--lcm-url")),
+                     children.size(), (*role)->Option("--lcm-url")),
          ""});
   }
   if (!any) {

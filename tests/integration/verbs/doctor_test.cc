@@ -88,6 +88,17 @@ TEST(DoctorTest, KnowsThatAnExperimentRunsRoles) {
                         ") has a run with 1 processes on " + url + "\n"));
 }
 
+TEST(DoctorTest, NamesTheNetworkOfARunOverARelay) {
+  const ScratchFolder folder;
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "tcpq", "--pace",
+                  "1", "--log", folder.File("run.lcm")});
+  ASSERT_TRUE(run.WaitForErr("processes: ")) << run.Err();
+  const Outcome doctor = RunCommand({Program("fogline"), "doctor"});
+  EXPECT_THAT(doctor.out, testing::ContainsRegex("fogline \\(pid " + std::to_string(run.pid()) +
+                                                 "\\) has a run with [0-9]+ processes on "
+                                                 "tcpq://127.0.0.1:[0-9]+\n"));
+}
+
 TEST(DoctorTest, SaysWhatToWriteInPlaceOfAnAddressThatIsNoGroup) {
   const Outcome doctor =
       RunCommand({Program("fogline"), "doctor", "--lcm-url", "udpm://10.0.0.1:7700"});
