@@ -145,6 +145,11 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
                              .spread_weight = arguments.spread_weight,
                              .steady = arguments.steady,
                              .jobs = arguments.jobs};
+  for (const FreeField& field : problem.fields) {
+    if (!sweep::IsOfRecording(problem.scenario, field.pointer())) continue;
+    throw InputError(
+        fmt::format("error: --free {}: {}", field.pointer(), sweep::kRecordingIsReadOnce));
+  }
   sweep::RequireThreshold(problem.scenario, arguments.scenario);
   problem.target =
       arguments.target.empty() ? PublishedTarget(problem.scenario) : ReadTarget(arguments.target);
@@ -181,11 +186,15 @@ std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments
   for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
   const fs::path from = fs::absolute(arguments.scenario).parent_path();
   text = WithSchemaIn(folder, from, std::move(text));
-  const fs::path recorded = scenario.lead.recorded.file;
-  if (scenario.lead.profile == LeadProfile::kRecorded && !recorded.empty() &&
-      recorded.is_relative()) {
-    text = WithValue(text, "/lead/recorded/file",
-                     Quote(fs::proximate(from / recorded, folder).string()));
+  const auto move_path = [&](const char* pointer, const fs::path& file) {
+    if (file.empty() || file.is_absolute()) return;
+    text = WithValue(text, pointer, Quote(fs::proximate(from / file, folder).string()));
+  };
+  const LeadSection& lead = scenario.lead;
+  if (lead.profile == LeadProfile::kRecorded) move_path("/lead/recorded/file", lead.recorded.file);
+  if (lead.profile == LeadProfile::kSumo) {
+    move_path("/lead/sumo/net_file", lead.sumo.net_file);
+    move_path("/lead/sumo/route_file", lead.sumo.route_file);
   }
   return text;
 }

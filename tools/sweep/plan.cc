@@ -201,9 +201,10 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
     }
     AddAxis(text, axes_[i]);
   }
-  std::int64_t left = kMaxRows / seeds_.count();
+  std::int64_t left = kMaxRows;
   for (const Axis& axis : axes_) left /= static_cast<std::int64_t>(axis.values.size());
-  if (left == 0) {
+  if (left == 0) throw InputError(fmt::format("error: --grid: more than {} rows", kMaxRows));
+  if (left < seeds_.count()) {
     throw InputError(fmt::format("error: --seeds {}:{}: more than {} rows in all", seeds_.first,
                                  seeds_.last, kMaxRows));
   }
@@ -218,12 +219,18 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   }
 }
 
+bool IsOfRecording(const Scenario& scenario, std::string_view pointer) {
+  return scenario.lead.profile == LeadProfile::kRecorded &&
+         (pointer == "/step_s" || pointer.starts_with("/lead/recorded/"));
+}
+
 void SweepPlan::AddAxis(const std::string& base, const Axis& axis) {
-  if (axis.pointer == "/seed" || axis.pointer == "/steps") {
-    throw InputError(fmt::format("error: --grid {}: {}", axis.pointer,
-                                 axis.pointer == "/seed" ? "seeds are given by --seeds"
-                                                         : "runs of one sweep are equally long"));
-  }
+  const auto refuse = [&axis](std::string_view why) {
+    throw InputError(fmt::format("error: --grid {}: {}", axis.pointer, why));
+  };
+  if (axis.pointer == "/seed") refuse("seeds are given by --seeds");
+  if (axis.pointer == "/steps") refuse("runs of one sweep are equally long");
+  if (IsOfRecording(base_, axis.pointer)) refuse(kRecordingIsReadOnce);
   fields_.emplace_back(axis.pointer);
   inner_.push_back(axis.pointer.starts_with("/arbitrator/"));
   Scenario scratch = base_;

@@ -43,6 +43,12 @@ struct SeedRange {
 /// Reads seeds "A:B" or "A". @throws InputError
 SeedRange ParseSeeds(const std::string& text);
 
+/// Whether the speeds of a recorded leader depend on this field. They are read once, together with
+/// the scenario. So such a field must be the same in all runs.
+bool IsOfRecording(const Scenario& scenario, std::string_view pointer);
+inline constexpr std::string_view kRecordingIsReadOnce =
+    "the recording of the leader is read once, before the runs";
+
 /// Part `index` of a sweep that is divided into `count` parts; `index` counts from 1. The parts
 /// have equal numbers of units (SweepPlan), or numbers that differ by 1.
 struct Shard {

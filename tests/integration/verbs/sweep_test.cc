@@ -274,6 +274,16 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
             "nor one seed\n");
   EXPECT_EQ(error({"--seeds", "1:1000000000", "--grid", "/fog/bias_m=0:1:101"}),
             "fogline sweep: error: --seeds 1:1000000000: more than 100000000000 rows in all\n");
+  EXPECT_EQ(error({"--grid", "/fog/bias_m=0:1:5000", "--grid", "/lidar/bias_m=0:1:5000", "--grid",
+                   "/radar/bias_m=0:1:5000"}),
+            "fogline sweep: error: --grid: more than 100000000000 rows\n");
+  for (const std::string field : {"/lead/recorded/start_s", "/step_s"}) {
+    EXPECT_EQ(RunCommand({Program("fogline"), "sweep", "scenario/recorded_lead.json", "--out",
+                          File("recorded.csv"), "--grid", field + "=0.05,0.1"})
+                  .err,
+              "fogline sweep: error: --grid " + field +
+                  ": the recording of the leader is read once, before the runs\n");
+  }
   EXPECT_EQ(error({"--shard", "4/3"}),
             "fogline sweep: error: --shard 4/3: not I/N with 1 <= I <= N <= 1000000\n");
   EXPECT_THAT(error({"--jobs", "0"}), StartsWith("fogline sweep: error: --jobs: "));
