@@ -14,7 +14,10 @@ void AddPersonMeasures(const std::set<std::int64_t>& seats, LoggedRun& run) {
     times.Add(input);
     latency.Add(input);
   });
-  run.result.input_latency = latency.Result();
+  // A keyboard at the terminal and a device of the kernel measure no latency.
+  if (const log::InputLatency measured = latency.Result(); measured.inputs > 0) {
+    run.result.input_latency = measured;
+  }
 }
 
 }  // namespace fogline::runner

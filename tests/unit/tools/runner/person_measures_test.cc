@@ -125,5 +125,17 @@ TEST_F(PersonMeasuresTest, AreMissingForASeatFromWhichNoCommandWasMade) {
   EXPECT_FALSE(run.result.input_latency);
 }
 
+TEST_F(PersonMeasuresTest, HasNoLatencyIfNoInputHasAMeasurement) {
+  const auto act = [](std::int64_t latency_us) {
+    return [latency_us](std::int64_t /*step*/) {
+      driver_input_t input{};
+      input.latency_us = latency_us;
+      return input;
+    };
+  };
+  EXPECT_FALSE(With(act(-1)).result.input_latency);
+  EXPECT_TRUE(With(act(5'000)).result.input_latency);
+}
+
 }  // namespace
 }  // namespace fogline::test
