@@ -34,8 +34,9 @@ struct DetectionMetrics {
 };
 
 /// Error of the LiDAR's value, m. The error is the value minus the correct value. The correct value
-/// has no noise and no fog, but has the LiDAR's bias and lateral offset. The error is below 0 if
-/// the value is too short, and NaN without a value.
+/// has no noise and no fog, but has the LiDAR's bias and lateral offset. A gap below 0, after a
+/// collision, counts as 0, and the correct value is never below 0. The error is below 0 if the
+/// value is too short, and NaN without a value.
 double LidarError(const Sample& sample, const LidarSection& lidar);
 
 /// Collects the measures, step by step.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "services/host_modes.h"
 
@@ -15,6 +16,20 @@ std::optional<double> Root(std::optional<double> mean_square) {
   if (!mean_square) return std::nullopt;
   return std::sqrt(*mean_square);
 }
+
+/// The sample of a step without HOST_COMMAND, with the values of the HOST_COMMAND before.
+Sample WithCommandOf(const Sample& before, const Sample& sample) {
+  Sample filled = sample;
+  filled.command_mps2 = before.command_mps2;
+  filled.lambda_automation = before.lambda_automation;
+  filled.lambda_human = before.lambda_human;
+  filled.doc = before.doc;
+  filled.threshold = before.threshold;
+  return filled;
+}
+
+/// The values before the first HOST_COMMAND: the automation drives, and there is no alarm.
+const Sample kBeforeTheFirstCommand{.threshold = std::numeric_limits<double>::infinity()};
 
 }  // namespace
 
@@ -34,9 +49,16 @@ MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
       detection_(scenario),
       track_(scenario) {}
 
+// In real time a step may lack HOST_COMMAND. It counts like the step before it, as in the measures
+// of take-overs.
+void MetricsAccumulator::Add(const Sample& sample) {
+  if (!std::isnan(sample.lambda_human)) return AddStep(sample);
+  AddStep(WithCommandOf(previous_.value_or(kBeforeTheFirstCommand), sample));
+}
+
 // The command of a step is applied only in the next step. So the jerk of a step belongs to the
 // transfers of earlier steps, and AddMotion() comes before AddAuthority().
-void MetricsAccumulator::Add(const Sample& sample) {
+void MetricsAccumulator::AddStep(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
   ++metrics_.steps;
   metrics_.duration_s = sample.time_s - first_time_s_;

@@ -142,6 +142,7 @@ class MetricsAccumulator {
     Mean mean_m;
   };
 
+  void AddStep(const Sample& sample);
   void AddSafety(const Sample& sample);
   void AddPairs(const Sample& sample);
   void AddAuthority(const Sample& sample);

@@ -79,7 +79,8 @@ void PairedAccumulator::Add(const Sample& baseline, const Sample& traded) {
   until_recovery_.Step(baseline.fog_present || traded.fog_present,
                        track_.IsWrong(baseline) || track_.IsWrong(traded),
                        [&](MeanImprovement& mean) {
-                         if (without > floor_m_) mean.Add(without, CompromisedSafety(traded));
+                         const double with = CompromisedSafety(traded);
+                         if (without > floor_m_ && !std::isnan(with)) mean.Add(without, with);
                        });
 }
 

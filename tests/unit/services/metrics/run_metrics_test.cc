@@ -215,6 +215,31 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 4);
 }
 
+TEST(MeasureTest, AStepWithoutACommandCountsLikeTheStepBefore) {
+  auto run = QuietRun(6);
+  for (metrics::Sample& sample : run) {
+    sample.lambda_human = 1;
+    sample.lambda_automation = 0;
+    sample.doc = 0.9;
+    sample.threshold = 0.5;
+  }
+  const metrics::RunMetrics whole = metrics::Measure(run);
+  for (const std::size_t k : {2, 4}) {
+    run[k].lambda_human = run[k].lambda_automation = run[k].doc = run[k].threshold =
+        run[k].command_mps2 = kNone;
+  }
+  const metrics::RunMetrics m = metrics::Measure(run);
+  EXPECT_EQ(m.transfers, 0);
+  EXPECT_EQ(m.rhe_pct, 100);
+  EXPECT_EQ(m.human_time_s, whole.human_time_s);
+  EXPECT_EQ(m.max_handover_jerk_mps3, std::nullopt);
+  EXPECT_EQ(m.detection.wrong_human_s, whole.detection.wrong_human_s);
+  EXPECT_EQ(m.detection.false_alarms_ph, whole.detection.false_alarms_ph);
+  // Before the first command, the automation drives.
+  run[0].lambda_human = run[0].lambda_automation = run[0].doc = run[0].threshold = kNone;
+  EXPECT_EQ(metrics::Measure(run).human_time_s, whole.human_time_s - kStep_s);
+}
+
 TEST(MeasureTest, JerkOfAHandOverAlsoFollowsTheBeginOfAMinimalRiskManoeuvre) {
   auto run = QuietRun(6);
   for (metrics::Sample& sample : run) sample.lambda_automation = 1;
