@@ -165,13 +165,16 @@ std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> ru
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!pairs[i].measures.si_pct) continue;
     const Scenario& scenario = runs[i].scenario;
-    report::ReportTable::Row row{.threshold = scenario.arbitrator.threshold,
-                                 .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
-                                 .si_pct = *pairs[i].measures.si_pct,
-                                 .rhe_pct = runs[i].result.measures.rhe_pct.value_or(
-                                     std::numeric_limits<double>::quiet_NaN()),
-                                 .effect = metrics::FogEffectOf(runs[i].result.measures),
-                                 .without = pairs[i].without};
+    const metrics::RunMetrics& measures = runs[i].result.measures;
+    const bool has_rhe =
+        measures.rhe_pct && metrics::IsKnown("rhe_pct", measures.rhe_pct, runs[i].result.lack);
+    report::ReportTable::Row row{
+        .threshold = scenario.arbitrator.threshold,
+        .seed = one_seed ? std::nullopt : std::optional(scenario.seed),
+        .si_pct = *pairs[i].measures.si_pct,
+        .rhe_pct = has_rhe ? *measures.rhe_pct : std::numeric_limits<double>::quiet_NaN(),
+        .effect = metrics::FogEffectOf(measures),
+        .without = pairs[i].without};
     for (const PublishedRow& published : scenario.published) {
       if (published.threshold != row.threshold) continue;
       row.published_si_pct = published.si_pct;
@@ -227,8 +230,7 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .seed = run.result.seed,
           .digest = log::DigestText(run),
           .has_gaps = run.gaps.Any() || run.result.lack.channels.any(),
-          .samples = run.gaps.Any() ? metrics::WithHoles(run.result.samples, run.scenario.step_s)
-                                    : std::move(run.result.samples),
+          .samples = metrics::WithHoles(run.result.samples, run.scenario.step_s),
           .measures = MetricsOf(run.result),
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <ranges>
 #include <string_view>
 
@@ -159,12 +161,18 @@ std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
 }
 
+/// Number of steps in the log of the run. A sample without values stands for a missing step.
+std::int64_t StepsOf(const ReportRun& run) {
+  return std::ranges::count_if(
+      run.samples, [](const metrics::Sample& sample) { return !std::isnan(sample.host_gap_m); });
+}
+
 std::string SummaryOf(std::span<const ReportRun> runs, const std::optional<ReportCurves>& curves) {
   std::string summary;
   if (!runs.empty()) {
     summary =
         fmt::format("{} {} of {} steps, seed {}", runs.size(), runs.size() == 1 ? "run" : "runs",
-                    RangeOf(runs, [](const ReportRun& run) { return run.samples.size(); }),
+                    RangeOf(runs, [](const ReportRun& run) { return StepsOf(run); }),
                     RangeOf(runs, [](const ReportRun& run) { return run.seed; }));
   }
   if (curves) {
