@@ -99,9 +99,10 @@ void LiveView::Hear(std::string_view channel, runtime::Bytes bytes) {
 }
 
 void LiveView::Handle() {
+  const bool followed = network_.followed();
   const std::string heard = network_.url();
   network_.Handle(Clock::now());
-  if (!runtime::SameNetwork(heard, network_.url())) tracker_.LeaveNetwork();
+  if (followed && !runtime::SameNetwork(heard, network_.url())) tracker_.LeaveNetwork();
   network_.ForgetNames(statistics_.front().unknown_names());
   TellNews();
   PumpAll();

@@ -46,6 +46,7 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
     Begin(run);
   }
   NoteLife(now);
+  left_ = false;
   realtime_ = run.realtime != 0;
   events_.set_may_lack_commands(realtime_);
   stopped_ = run.phase == run_t::STOP;
@@ -94,7 +95,6 @@ void RunTracker::Begin(const run_t& run) {
   person_ = {};
   ForgetEvents();
   newest_ = -1;
-  left_ = false;
   may_begin_again_ = false;
   offered_ = false;
 }

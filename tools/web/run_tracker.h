@@ -16,8 +16,9 @@
 
 namespace fogline::web {
 
-/// Follows one run until it has ended or has been silent for kSilent. Then follows the next run
-/// whose RUN comes. The scenario of a run comes in parts. A run is shown when all parts have come.
+/// Follows one run until it has ended, has been silent for kSilent, or its network is heard no
+/// more. Then follows the next run whose RUN comes. The scenario of a run comes in parts. A run is
+/// shown when all parts have come.
 class RunTracker {
  public:
   static constexpr Duration kSilent = milliseconds(2000);
@@ -31,8 +32,9 @@ class RunTracker {
   /// Takes a message. @param channel index of the channel in kChannels
   void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
 
-  /// Notes that the network of the followed run is heard no more. So the tracker follows the next
-  /// run whose RUN comes.
+  /// Notes that the network of an announced run is heard no more. If the followed run was there,
+  /// the tracker follows the next run whose RUN comes. If the RUN of the followed run comes again,
+  /// the tracker stays with it.
   void LeaveNetwork() { left_ = true; }
 
   /// The followed run; nullopt before the first run.
@@ -67,7 +69,7 @@ class RunTracker {
   std::optional<std::int64_t> only_;
   TimePoint heard_{};
   bool stopped_ = false;
-  bool left_ = false;  // whether the network of the followed run is heard no more
+  bool left_ = false;  // whether LeaveNetwork() was called after the last RUN of the followed run
   // Whether an old step means that the run is being played again. This is the case after the end of
   // the run, and after a silence of all its processes. Otherwise an old step is a repair: a role
   // that was started again asks for all steps from the first one on.

@@ -47,9 +47,12 @@ class LoggedField {
       : index_(index),
         request_(request),
         source_(request.channel),
-        read_(FoglineTypes(),
-              *FoglineTypes().WithFingerprint(runtime::FingerprintOf(source_.channel)),
-              request.field) {}
+        read_(FoglineTypes(), TypeOf(source_.channel), request.field) {
+    const auto& members = TypeOf(source_.channel).members;
+    const bool has_valid = std::ranges::find(members, "valid", &LcmMember::name) != members.end();
+    const bool is_value = request.field != "valid" && !request.field.starts_with("header.");
+    if (has_valid && is_value) valid_.emplace(FoglineTypes(), TypeOf(source_.channel), "valid");
+  }
 
   /// The series that the request asks for.
   Series Values() const {
@@ -97,14 +100,22 @@ class LoggedField {
   std::optional<SeriesPoint> Of(runtime::Bytes message) const {
     if (message.empty()) return std::nullopt;
     const auto utime = static_cast<double>(runtime::ReadInt64(message, kUtimeOffset));
+    // The fields of a message that is not valid are 0, and this 0 is no value.
+    const bool has_value = !valid_ || (*valid_)(message) != 0.0;
+    const std::optional<double> value = has_value ? read_(message) : std::nullopt;
     return SeriesPoint{.time_s = utime / kMicrosPerSecond,
-                       .value = read_(message).value_or(std::numeric_limits<double>::quiet_NaN())};
+                       .value = value.value_or(std::numeric_limits<double>::quiet_NaN())};
+  }
+
+  static const LcmStruct& TypeOf(std::size_t channel) {
+    return *FoglineTypes().WithFingerprint(runtime::FingerprintOf(channel));
   }
 
   const LogIndex& index_;
   const SeriesRequest& request_;
   Source source_;
   FieldReader read_;
+  std::optional<FieldReader> valid_;  // only for a value of a message that may be not valid
 };
 
 /// A warning for a client of Foxglove's protocol, as a status of level 1.

@@ -101,7 +101,8 @@ class Page {
   takeToken(hash) {
     this.link = readFragment(hash);
     this.token = takeToken(hash);
-    if (!this.wire.moveTo(socketUrl(location, this.token)) && this.store) this.openLink();
+    const isSame = !this.wire.moveTo(socketUrl(location, this.token));
+    if (isSame && this.store && !this.early) this.openLink();  // else when the history has come
   }
 
   actions() {

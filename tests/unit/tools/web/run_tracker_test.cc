@@ -121,6 +121,16 @@ TEST(RunTrackerTest, LeavesARunWhoseNetworkIsHeardNoMore) {
   EXPECT_EQ(tracker.run()->run_id, 6);
 }
 
+TEST(RunTrackerTest, StaysWithARunThatIsHeardOnItsNextNetwork) {
+  RunTracker tracker;
+  Speaker first(tracker, 5), second(tracker, 6);
+  first.AllParts(kBegin);
+  tracker.LeaveNetwork();
+  first.Part(0, kBegin);
+  second.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 5);
+}
+
 TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
   RunTracker tracker;
   Speaker own(tracker, 5), other(tracker, 6);

@@ -181,7 +181,7 @@ export class LiveStore {
     for (const {series} of this.wanted.values()) series.forgetBefore(oldest);
     const firstSteps = [...this.tracks.values()].filter(({channel}) => channel.isStepwise)
       .map(({steps}) => steps[0] ?? Infinity);
-    this.firstStep = Math.min(...firstSteps);
+    this.firstStep = Math.min(this.lastStep, ...firstSteps);
   }
 
   /**

@@ -155,7 +155,7 @@ export class LogStore {
 
   part(channel, path, begin, end, points) {
     const from = Math.min(Math.max(this.firstStep, begin), this.lastStep);
-    const to = Math.max(from, Math.min(this.lastStep, end));
+    const to = Math.max(from, Math.min(this.lastStep, end - 1));
     const name = JSON.stringify([channel, path, from, to, points]);
     if (!this.details.has(name)) {
       for (const oldest of this.details.keys()) {

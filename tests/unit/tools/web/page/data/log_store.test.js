@@ -68,10 +68,21 @@ test("a store keeps a limited number of steps", async () => {
 test("a window that moves over a long log needs another part only now and then", async () => {
   const {wire, store} = opened(1e6);
   store.detail("TRUTH", "host_gap_m", 0, 60);
-  assert.deepEqual([wire.asked[0].question.from, wire.asked[0].question.to], [0, 1200], "not the whole log");
+  assert.deepEqual([wire.asked[0].question.from, wire.asked[0].question.to], [0, 1199], "not the whole log");
   await wire.answer();
   for (let from = 0; from < 600; from += 1) store.detail("TRUTH", "host_gap_m", from, from + 60);
   assert.ok(wire.asked.length <= 25, String(wire.asked.length));
+});
+
+test("a window of as many values as a part may have gets every value", async () => {
+  const wire = new Wire();
+  const catalogue = new Catalogue({types: describedTypes(), channels: [{id: 0, name: "TRUTH", type: "truth_t"}]});
+  const store = new LogStore(catalogue, wire);
+  store.setRun({run_id: "1", step_s: 0.001});
+  store.setLog({first_step: 0, last_step: 1e6});
+  store.detail("TRUTH", "host_gap_m", 0, 20, 20000);
+  await wire.answer();
+  assert.ok(store.detail("TRUTH", "host_gap_m", 0, 20, 20000).whole);
 });
 
 test("the changes of a field are asked for once, and are exact at any time", async () => {
