@@ -22,11 +22,18 @@ inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
 inline bool IsSpeed(double speed) { return speed >= kMinSpeed && speed <= kMaxSpeed; }
 
-/// The parts of a text, in order; at least one.
+/// The parts of a text, in order; at least one. No part ends within a character of UTF-8, because
+/// some languages decode each part by itself.
 inline std::vector<std::string> SplitScenario(std::string_view text) {
+  constexpr std::size_t kMostContinuationBytes = 3;
+  const auto continues = [&text](std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
   std::vector<std::string> parts;
   do {
-    parts.emplace_back(text.substr(0, kPartBytes));
+    std::size_t size = kPartBytes;
+    while (continues(size) && size > kPartBytes - kMostContinuationBytes) --size;
+    parts.emplace_back(text.substr(0, size));
     text.remove_prefix(parts.back().size());
   } while (!text.empty());
   return parts;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/text.h"
+
 namespace fogline {
 namespace {
 
@@ -28,6 +30,22 @@ TEST(ScenarioPartsTest, PutsATextTogetherFromPartsInAnyOrderWithRepetitions) {
   ASSERT_TRUE(inbox.Complete());
   EXPECT_EQ(inbox.Text(), text);
   EXPECT_TRUE(inbox.HashHolds());
+}
+
+TEST(ScenarioPartsTest, CutsNoCharacterInTwo) {
+  for (const std::string character : {"\u00e4", "\u20ac", "\U0001f697"}) {  // 2, 3 and 4 bytes
+    for (std::size_t before = 0; before < character.size(); ++before) {
+      std::string text(before, 'x');
+      while (text.size() < 3 * runtime::kPartBytes) text += character;
+      std::string joined;
+      for (const std::string& part : runtime::SplitScenario(text)) {
+        EXPECT_TRUE(IsUtf8(part)) << character << before;
+        EXPECT_LE(part.size(), runtime::kPartBytes);
+        joined += part;
+      }
+      EXPECT_EQ(joined, text);
+    }
+  }
 }
 
 TEST(ScenarioPartsTest, NoticesATextThatWasChangedOnItsWay) {

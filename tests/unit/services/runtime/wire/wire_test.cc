@@ -111,6 +111,12 @@ TEST(WireTest, FindsValuesThatAreNotFinite) {
   track_t track{};
   track.covariance[2][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(runtime::FirstNonFiniteField(track), "covariance");
+  track.innovation_variance[2] = std::numeric_limits<double>::quiet_NaN();
+  track.state[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(runtime::FirstNonFiniteField(track), "state");
+  track.state[1] = 0;
+  track.covariance[2][1] = 0;
+  EXPECT_EQ(runtime::FirstNonFiniteField(track), "innovation_variance");
 }
 
 TEST(DigestTest, LeavesTheRunIdOutAndNothingElse) {
