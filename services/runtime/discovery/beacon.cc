@@ -60,8 +60,11 @@ void Beacon::Publish() {
 }
 
 BeaconListener::BeaconListener(const std::string& meeting_url) : announcements_(HostName()) {
-  if (!ParseMulticastUrl(meeting_url)) return;
-  bus_.emplace(meeting_url);
+  const auto address = ParseMulticastUrl(meeting_url);
+  if (!address) return;
+  // A beacon does not leave its machine (MeetingSender). The kernel delivers it only if a socket of
+  // this machine has joined the group on loopback.
+  bus_.emplace(UrlOnThisMachine(*address));
   bus_->Subscribe(kBeaconChannel, [this](Bytes bytes) {
     const TimePoint now = Clock::now();
     if (const auto share = shedder_.Count(now)) bus_->SetSampleRate(kBeaconChannel, *share);

@@ -2,8 +2,6 @@
 
 #include <lcm/lcm.h>
 
-#include <fmt/core.h>
-
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
@@ -14,7 +12,7 @@ MeetingSender::MeetingSender(const std::string& own_url) {
   const std::string meeting = MeetingUrl();
   const auto address = ParseMulticastUrl(meeting);
   if (!address || SameNetwork(meeting, own_url)) return;
-  const std::string url = fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
+  const std::string url = UrlOnThisMachine(*address);
   if (!WhyNoMulticast(url).empty()) return;
   const LcmSockets sockets(ReachOf(url));
   lcm_ = lcm_create(url.c_str());

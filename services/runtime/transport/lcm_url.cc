@@ -197,6 +197,10 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   return address;
 }
 
+std::string UrlOnThisMachine(const MulticastAddress& address) {
+  return fmt::format("udpm://{}:{}?ttl=0", address.group, address.port);
+}
+
 MulticastAddress MulticastAddressOf(std::string_view url) {
   MulticastAddress address = LcmsDefaults();
   ReadMulticast(url, address);

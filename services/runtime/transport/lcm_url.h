@@ -44,6 +44,9 @@ struct MulticastAddress {
 /// wrong (WhyWrongUrl()).
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
+/// The URL of the same group and port, for messages that do not leave this machine.
+std::string UrlOnThisMachine(const MulticastAddress& address);
+
 /// The contents of a udpm:// or mpudpm:// URL. @pre nothing is wrong in the URL (WhyWrongUrl())
 MulticastAddress MulticastAddressOf(std::string_view url);
 

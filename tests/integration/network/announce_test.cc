@@ -390,6 +390,20 @@ TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOf
   EXPECT_EQ(LinesBesideDelays(run.err), 2) << run.err;
 }
 
+TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedAlsoIfTheMeetingAddressIsThatOfAnotherNetwork) {
+  const Lab lab(1);
+  const auto with = [&lab](std::vector<std::string> command) {
+    command.insert(command.begin(), {"env", "LCM_DEFAULT_URL=udpm://239.255.76.67:7700?ttl=1"});
+    return lab[0].On(command);
+  };
+  // A driver without a URL finds the run of another network only by its announcement.
+  Background driver(with({Program("fogline-driver")}));
+  const Outcome run = RunCommand(with(
+      Run({"--transport", "tcpq", "--set", "/steps=30", "--external", "driver", "--wait", "60"})));
+  EXPECT_EQ(Result(run)["steps"], 30);
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
 TEST_F(AnnounceOnMachineTest, ARunIsAnnouncedOnItsOwnMachineOnly) {
   const Lab lab(2);
   Background run(lab[0].On(Run(
