@@ -195,9 +195,12 @@ class StepNode final : public Work {
   template <std::size_t I>
   Heard<std::tuple_element_t<I, AllInputs>> HeardBy(std::int64_t step) {
     const auto* newest = NewestOf<I>(step);
-    if (newest == nullptr) return {};
     const auto input = &parts_.inputs.Of(kPlace<I>) - parts_.inputs.all().data();
-    return {.state = watch_->StateFor(static_cast<std::size_t>(input), step), .newest = newest};
+    const InputState state = watch_->StateFor(static_cast<std::size_t>(input), step);
+    // A process may decide a step that is older than all its messages. Then it has no value,
+    // although the input is not lost.
+    const bool promises = Usable(state) && newest == nullptr;
+    return {.state = promises ? InputState::kAwaited : state, .newest = newest};
   }
 
   /// The header of the first input. This input is the world's message that begins the step.

@@ -143,11 +143,13 @@ TimePoint TickRule::Resume(TimePoint now) {
   phase_ = Phase::kTicking;  // take_over_ sets another phase if the run ends with this step
   try {
     take_over_(*search_.newest);
-  } catch (const std::exception&) {  // the TRUTH does not fit this scenario
+  } catch (const std::logic_error&) {  // the TRUTH does not fit this scenario
     ++parts_.own.message().malformed;
     search_.newest.reset();
     phase_ = Phase::kResuming;
     return search_.ask_at;
+  } catch (const std::exception& error) {  // the world cannot go on
+    parts_.own.Fail(error.what());
   }
   return now;
 }

@@ -212,6 +212,25 @@ TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1, 2));
 }
 
+TEST_F(DeadlineRuleTest, StopsTheHostIfTheDriverThatAConflictNeedsHasNeverCome) {
+  // GIVEN radar and LiDAR that disagree, and a driver whose input is LOST before a message has come
+  radar_t radar = Script::Of<radar_t>(0);
+  radar.valid = 1;
+  radar.range_m = 30;
+  lidar_t lidar = Script::Of<lidar_t>(0);
+  lidar.valid = 1;
+  lidar.range_m = 20;
+  for (std::int64_t step = 0; step < 3; ++step) {
+    radar.header.step = lidar.header.step = step;
+    Say<ego_t, track_t, accel_command_t>(step);
+    script_.Say(radar);
+    script_.Say(lidar);
+    script_.PollUpTo(node_, At(1.22));
+  }
+  ASSERT_FALSE(commands_.empty());
+  EXPECT_EQ(commands_.back().mode, arbitration_t::MINIMAL_RISK);
+}
+
 // ---- TickRule: the world begins the steps ------------------------------------------------------
 
 class TickRuleTest : public RealtimeRulesTest {
@@ -275,6 +294,14 @@ TEST_F(TickRuleTest, WaitsForNoRoleForLong) {
   script_.Poll(node_, At(1.5));
   script_.PollUpTo(node_, At(1.51));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
+}
+
+TEST_F(TickRuleTest, StopsTheCarsIfTheirCommandsNeverCome) {
+  Go();
+  for (int tick = 0; tick <= 6; ++tick) script_.PollUpTo(node_, At(tick + 0.01));
+  EXPECT_LT(truths_.back().host_acceleration_mps2, 0);
+  EXPECT_LT(truths_.back().follower_acceleration_mps2.at(0), 0);
+  EXPECT_EQ(Status(node_).minimal_risk, status_t::HOST | status_t::FOLLOWER);
 }
 
 TEST_F(TickRuleTest, CountsTheLatencyAlsoOfACommandThatComesTooLate) {
