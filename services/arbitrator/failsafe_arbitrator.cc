@@ -60,7 +60,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
-      // Only RECOVERING tells the vehicle that the driver has ended a manoeuvre.
+      // HUMAN does not tell the vehicle that the driver has ended a manoeuvre.
       Drive(
           arbitrator_.recovers_from_manoeuvre() ? arbitration_t::RECOVERING : arbitration_t::HUMAN,
           inputs.driver.newest->acceleration_mps2);
@@ -106,9 +106,9 @@ Decision FailsafeArbitrator::Judge(std::int64_t step, const ArbitratorInputs& in
   if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
   if (demanded_) return Decision::kMinimalRisk;
   const Offer automation = AutomationOffer(inputs, pairs);
-  // If the automation has failed, there is no time to ask the driver. So a driver who has not taken
-  // over counts as gone.
-  const bool unasked = automation == kGone && arbitrator_.must_ask();
+  // A driver who must be asked drives only after taking over. If the automation has failed, there
+  // is no time to ask. So a driver who has not taken over counts as gone.
+  const bool unasked = automation != kThere && arbitrator_.must_ask();
   const Offer human = unasked ? kGone : HumanOffer(step, inputs);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();
   return Decide(automation, human, disputed ? kDisputed : kCalm);

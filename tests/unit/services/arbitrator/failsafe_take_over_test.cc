@@ -87,7 +87,8 @@ TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvreAlsoIfTheAutomationIs
   inputs_.automation.state = InputState::kLost;
   for (int k = 0; k < 10; ++k) Step();
   driver_.readiness = 1;
-  // The vehicle ends the manoeuvre only at RECOVERING, so a lost command must not matter.
+  // HUMAN does not end the manoeuvre of the vehicle. RECOVERING lasts for several steps, so a lost
+  // command does not matter.
   for (int k = 0; k < 5; ++k) {
     ASSERT_EQ(Step().mode, arbitration_t::RECOVERING);
     EXPECT_EQ(last_.acceleration_mps2, -0.4);
@@ -95,6 +96,15 @@ TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvreAlsoIfTheAutomationIs
   }
   StepUntil(arbitration_t::HUMAN);
   EXPECT_EQ(arbitrator_.minimal_risk(), 0);
+}
+
+TEST_F(FailsafeTakeOverTest, GivesNoAuthorityToADriverWhoWasNotAskedWhileTheAutomationIsAwaited) {
+  Agree();
+  inputs_.automation = {InputState::kAwaited, nullptr};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
+    EXPECT_EQ(last_.lambda_human, 0);
+  }
 }
 
 /// A person drives. The driver's process sends its messages also when no person is there; the
