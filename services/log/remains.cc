@@ -38,7 +38,10 @@ class Follower {
   /// @return false at the first event that does not continue the steps of the recorder
   bool Take(const Event& event, const LogHead& head) {
     if (event.number != head.events - 1) return false;
-    if (front_.realtime && IsBeside(event)) return true;
+    if (front_.realtime && IsBeside(event)) {
+      if (next_ == 0) remains_.head = head;  // otherwise it goes with the step that has begun
+      return true;
+    }
     const std::int64_t step = StepOf(event, front_.run_id);
     if (step < 0) return false;
     return front_.realtime ? TakeRealtime(event, step, head) : TakeNext(event, step, head);

@@ -47,7 +47,8 @@ void RecordRule::Listen() {
 // Subscribes to DRIVER_INPUT and TRIAL. The constructor calls this function, because the driver
 // uses inputs from the first TRUTH on, and the recorder joins before this TRUTH.
 void RecordRule::ListenToInputs() {
-  // The driver refuses and counts invalid messages. The recorder only ignores them.
+  // The driver refuses and counts invalid DRIVER_INPUT messages. The recorder only ignores them. No
+  // other role reads TRIAL, so the recorder counts what it refuses.
   parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
     const auto* input = arrival.As<driver_input_t>();
     if (input == nullptr || input->header.run_id != *parts_.run.id ||
@@ -57,13 +58,17 @@ void RecordRule::ListenToInputs() {
     Hear(IndexOf<driver_input_t>(), arrival.bytes());
   });
   parts_.bus.Subscribe(ChannelOf<trial_t>().name, [this](runtime::Arrival& arrival) {
-    const auto* fact = arrival.As<trial_t>();
-    if (fact == nullptr || fact->header.run_id != *parts_.run.id ||
-        runtime::WrongIn(*fact) != nullptr || !facts_per_s_.Take(arrival.time())) {
-      return;
-    }
+    if (const runtime::RefusalCounter wrong = WhyRefused(arrival)) return parts_.own.Refuse(wrong);
     Hear(IndexOf<trial_t>(), arrival.bytes());
   });
+}
+
+runtime::RefusalCounter RecordRule::WhyRefused(runtime::Arrival& trial) {
+  if (const runtime::RefusalCounter wrong = trial.Wrong<trial_t>()) return wrong;
+  const trial_t& fact = *trial.As<trial_t>();
+  if (fact.header.run_id != *parts_.run.id) return &status_t::foreign;
+  if (const runtime::RefusalCounter wrong = runtime::WrongIn(fact)) return wrong;
+  return facts_per_s_.Take(trial.time()) ? nullptr : &status_t::too_frequent;
 }
 
 void RecordRule::Hear(std::size_t channel, runtime::Bytes bytes) {

@@ -71,6 +71,8 @@ class RecordRule final : public runtime::FireRule {
   void AskForHoles(TimePoint now);
   void Listen();
   void ListenToInputs();
+  /// The counter of the reason why a TRIAL is refused; nullptr if it is accepted.
+  runtime::RefusalCounter WhyRefused(runtime::Arrival& trial);
   void Hear(std::size_t channel, runtime::Bytes bytes);
 
   runtime::Parts& parts_;
