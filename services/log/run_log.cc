@@ -194,8 +194,9 @@ class RunLogReader::Assembler {
     // shows that the run has ended.
     if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;
     const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
-    run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&
-                 reader_.torn().empty() && !run_.altered;
+    const bool has_end = last_ && whole && run_.has_scenario && conflict_.empty() && !run_.altered;
+    run_.ended = has_end && reader_.torn().empty();
+    run_.ends_torn = has_end && !reader_.torn().empty();
     run_.complete = run_.ended && (!run_.realtime || (run_.realtime->has_status &&
                                                       run_.realtime->unlogged_messages == 0 &&
                                                       run_.realtime->unlogged_channels.none()));

@@ -49,6 +49,8 @@ struct RunLog {
   //   already returned its step.)
   // - In lockstep: the log has all messages.
   bool ended = false;
+  // Whether `ended` would be true if the log had no incomplete event at its end.
+  bool ends_torn = false;
   // Whether `ended` is true and the log has every published message. In lockstep this is the same
   // as `ended`. In real time, STATUS messages in the log must show that no published message is
   // missing (RealtimeFigures::unlogged_messages and unlogged_channels).

@@ -53,8 +53,8 @@ result is the same. Scenario and seed are those of the log. Give transport, pace
 key and the external roles again. A log whose seal is signed needs the same key;
 a log without a seal does not show whether its run had a key. The roles go on from
 the log, so its steps are computed again and compared, unless --no-verify is given.
-A complete log without a seal is compared in the same way, and then gets a seal;
-with --no-verify it gets none. A complete log with a seal is compared only with --verify.
+A complete log without a whole seal is compared in the same way, and then gets a
+seal; with --no-verify it gets none. A complete log with a seal is compared only with --verify.
 
 --view opens the run in a browser (fogline view --help), and its log when it is over.
 Then Ctrl-C ends the program. If the page cannot be shown, the run goes on without it.
@@ -214,39 +214,38 @@ std::vector<runtime::OtherBuild> OthersIn(const runner::LoggedRun& run,
   return others;
 }
 
-/// Measures a log that has the whole run. An incomplete event behind the last step is removed, such
-/// as a seal that was being written when the computer crashed.
-runner::LoggedRun MeasureWhole(const runner::ResumedLog& log, const std::filesystem::path& file) {
-  const log::LogHead& head = log.resumption().remains.head;
-  runner::LoggedRun run = runner::MeasureLoggedRun(file, log.scenario());
+/// Whether the log lacks nothing but its seal, of which it may have a part. A computer that crashes
+/// while the seal is written leaves such a log.
+bool HasTornSeal(const runner::LoggedRun& run, const runner::ResumedLog& log,
+                 const std::filesystem::path& file) {
+  const std::int64_t end = log.resumption().remains.head.bytes;
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  if (!unknown && run.events.bytes == head.bytes && std::cmp_less(head.bytes, size)) {
-    const log::EventLogWriter cut(file, head);
-    run = runner::MeasureLoggedRun(file, log.scenario());
-  }
-  if (run.complete) return run;
-  throw InputError(fmt::format("{}: error: --resume: {}", PathText(file), run.note));
+  return !unknown && run.ends_torn && run.events.bytes == end &&
+         std::cmp_less_equal(size, end + log::kTailBytes);
 }
 
 /// Measures a log that has the whole run, and verifies it if it has no seal. Seals the log if the
-/// verification succeeds. --no-verify omits verification and seal.
+/// verification succeeds, and removes a torn seal first. --no-verify omits verification and seal.
 runner::RunResult ResultOfWhole(const runner::ResumedLog& log, const runner::RunOptions& options,
                                 const runtime::SigningKey* key) {
   const runner::LogSealer sealer(options.log);
-  runner::LoggedRun run = MeasureWhole(log, options.log);
+  runner::LoggedRun run = runner::MeasureLoggedRun(options.log, log.scenario());
+  if (!run.complete && !HasTornSeal(run, log, options.log)) {
+    throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
+  }
   if (options.announce) Notice(PathText(options.log) + ": the run is complete");
-  runner::RunResult result = std::move(run.result);
   // If the log has all steps but no seal, an earlier runner ended before it sealed the log.
   const bool to_seal = !run.seal;
-  auto& verification = result.verification;
+  auto& verification = run.result.verification;
   if (options.verify.value_or(to_seal)) {
     verification = replay::VerifyRun(options.log, run, OthersIn(run, options.external));
   }
   if (to_seal && verification && !verification->roles.empty() && verification->Holds()) {
+    if (!run.complete) log::EventLogWriter(options.log, run.events);
     sealer.Seal(run, {}, {.builds = BuildsOf(*verification)}, key);
   }
-  return result;
+  return std::move(run.result);
 }
 
 /// Continues the run of a log to its end. If the log already has the whole run, no step is added.
@@ -292,7 +291,14 @@ int RunAndView(RunArguments& arguments) {
   options.on_network = [&viewer](std::int64_t, const std::string& url) { viewer.ShowNetwork(url); };
   const int code = RunShown(arguments, viewer);
   std::fflush(stdout);
-  viewer.ShowLog(options.log);
+  std::error_code missing;  // a run that failed before its first step has no log
+  if (!std::filesystem::exists(options.log, missing)) return code;
+  if (viewer.Runs()) {
+    viewer.ShowLog(options.log);
+  } else if (!WasInterrupted()) {  // for example, --resume of a complete log makes no run
+    Notice(fmt::format("--view: no page was opened; fogline view {} shows the log",
+                       PathText(options.log)));
+  }
   while (viewer.Runs() && !WasInterrupted()) std::this_thread::sleep_for(milliseconds(50));
   return code;
 }
@@ -311,6 +317,9 @@ void CheckResume(const CLI::App& verb) {
   }
   if (verb.get_option("--realtime")->count() > 0) {
     throw CLI::ValidationError("--realtime: a run in real time cannot be resumed");
+  }
+  if (verb.get_option("--wall-clock")->count() > 0) {
+    throw CLI::ValidationError("--wall-clock: --resume goes on as the log began");
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,23 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
   EXPECT_EQ(ExpectSameEnd(whole, {"--verify"})["verified"]["roles"].size(), kRoles.size() - 1);
 }
 
+TEST_F(ResumeOfCompleteLogTest, RefusesAWallClockBecauseTheLogDecides) {
+  Undisturbed();
+  std::filesystem::copy(File("whole.lcm"), log_);
+  const Outcome outcome = Resume({"--wall-clock"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--wall-clock: --resume goes on as the log began"));
+}
+
+TEST_F(ResumeOfCompleteLogTest, SaysThatViewHasNothingToShow) {
+  Undisturbed();
+  std::filesystem::copy(File("whole.lcm"), log_);
+  const Outcome outcome = Resume({"--view"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--view: no page was opened; fogline view " + log_ + " shows the log"));
+}
+
 TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   Undisturbed();
   // GIVEN a log that was changed at step 100. When a run continues, all roles publish the last
@@ -110,6 +128,22 @@ TEST_F(ResumeOfCompleteLogTest, SealsALogWhoseSealIsTorn) {
     EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), kRoles.size() - 1);
     EXPECT_EQ(Digest()["seal"], "holds");
   }
+}
+
+TEST_F(ResumeOfCompleteLogTest, LeavesALogWithATornSealAsItIsUnlessItSealsIt) {
+  Undisturbed();
+  const auto tear = [this] {
+    std::ofstream(log_, std::ios::app | std::ios::binary) << "a part of a seal";
+    return Content(log_);
+  };
+  LeaveForgedAndUnsealed();
+  const std::string forged = tear();
+  EXPECT_EQ(Resume().code, 1);
+  EXPECT_TRUE(Content(log_) == forged);
+  LeaveUnsealed();
+  const std::string torn = tear();
+  EXPECT_EQ(Resume({"--no-verify"}).code, 0);
+  EXPECT_TRUE(Content(log_) == torn);
 }
 
 TEST_F(ResumeOfCompleteLogTest, DoesNotComputeAgainWhatAnExternalRoleHasComputed) {
