@@ -54,6 +54,12 @@ std::string HostGroup::RelayPlace() const {
         hosts_.front()->name(), address.empty() ? "an unknown address" : address, host->name(),
         host->own_address().empty() ? "an unknown address" : host->own_address()));
   }
+  if (address.find(':') != std::string::npos) {
+    throw std::runtime_error(
+        fmt::format("{} reaches this machine over IPv6 ({}), but a relay needs IPv4; give an IPv4 "
+                    "address: --relay-at ADDRESS",
+                    hosts_.front()->name(), address));
+  }
   return address + ":0";
 }
 
@@ -67,6 +73,10 @@ void HostGroup::Check(const std::string& url, const runtime::TrafficOptions& tra
 
 std::unique_ptr<HostGroup> Connect(const RunPlan& plan) {
   return plan.empty() ? nullptr : std::make_unique<HostGroup>(plan);
+}
+
+void HostGroup::KeepAlive() const {
+  for (const auto& host : hosts_) host->Look();
 }
 
 processes::RolePlace* HostGroup::PlaceOf(Role role) const {

@@ -27,6 +27,10 @@ class HostGroup {
   ///     cannot be read; Interrupted
   void Check(const std::string& url, const runtime::TrafficOptions& traffic, Duration silence);
 
+  /// Sends signs of life to the machines, and handles their messages. Call KeepAlive() repeatedly
+  /// while the runner waits, otherwise the machines end their roles.
+  void KeepAlive() const;
+
   /// The machine of a role; nullptr: this machine.
   processes::RolePlace* PlaceOf(Role role) const;
   /// All machines.

@@ -77,7 +77,8 @@ void RemoteHost::EndCheck(TimePoint end) {
 pid_t RemoteHost::StartRole(Role role, const std::vector<std::string>& arguments) {
   // A restart must not delay the runner while the machine is out of sight. The first start may
   // wait.
-  const bool again = starts_.erase(role) > 0;
+  const bool again = !ordered_.insert(role).second;
+  starts_.erase(role);
   if (const std::string why = WhyOutOfSight(); again && !why.empty()) throw std::runtime_error(why);
   connection_.lines().Send({{kStart, NameOf(role)}, {kArguments, arguments}});
   Await([this, role] { return starts_.contains(role); }, Clock::now() + kStartLimit,

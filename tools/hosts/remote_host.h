@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ class RemoteHost : public processes::RolePlace {
   /// Waits for the result of the check. @throws std::runtime_error with the problems of that
   /// machine; Interrupted
   void EndCheck(TimePoint end);
+  /// Sends a sign of life if it is due, and handles the messages that have come.
+  void Look();
   /// The address of the runner's machine, as the other machine sees it; "" if unknown.
   const std::string& own_address() const { return own_address_; }
 
@@ -56,8 +59,6 @@ class RemoteHost : public processes::RolePlace {
     Role role;
     std::optional<std::int64_t> activity{};
   };
-  /// Sends a sign of life if it is due, and handles the messages that have come.
-  void Look();
   /// Handles one message.
   /// @throws NotUnderstood, nlohmann::json::exception if the message is not one of host_messages.h
   void Take(const nlohmann::json& message);
@@ -79,6 +80,7 @@ class RemoteHost : public processes::RolePlace {
   std::string own_address_;
   std::optional<std::string> problems_;  // result of the check; "": no problem
   std::map<pid_t, Process> processes_;
+  std::set<Role> ordered_;                 // roles whose start was ordered before
   std::map<Role, nlohmann::json> starts_;  // for each role, the answer to its last start order
   std::vector<Exit> exits_;
   std::string lost_;                      // why the connection has ended; "" while it is open

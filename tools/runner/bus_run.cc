@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
+#include <thread>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/process/progress.h"
+#include "common/process/signals_blocked.h"
 #include "scenario/io/loader.h"
 #include "services/closed_loop/algorithms.h"
 #include "services/recorder/recorder.h"
@@ -71,6 +74,20 @@ std::int64_t NewerThanEveryRunner() {
   return std::chrono::duration_cast<microseconds>(now).count();
 }
 
+/// Starts a thread that sends signs of life to the other machines until it is asked to stop. If a
+/// connection ends meanwhile, the start of the roles there fails and says so.
+std::jthread KeepAlive(const hosts::HostGroup* hosts) {
+  if (hosts == nullptr) return {};
+  static constexpr Duration kLookEvery = milliseconds(20);
+  const SignalsBlocked blocked;  // only the runner's thread handles signals
+  return std::jthread([hosts](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      hosts->KeepAlive();
+      std::this_thread::sleep_for(kLookEvery);
+    }
+  });
+}
+
 runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
                                                       const RunOptions& options, bool in_memory) {
   // The duration of a step at this pace. It is added to the stall limit, because a slow pace is not
@@ -81,7 +98,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
           .scenario_text = resume ? resume->front.parts.Text() : PrintScenario(scenario),
           .steps = scenario.steps,
           .progress = resume ? resume->remains.steps - 1 : -1,
-          .sequence = resume ? NewerThanEveryRunner() : 0,
+          .sequence = resume || options.run_id ? NewerThanEveryRunner() : 0,
           .pace = options.pace,
           .realtime = options.realtime,
           .period = duration_cast<Duration>(step),
@@ -282,7 +299,10 @@ BusRun RunOnBus(const Scenario& scenario, const RunOptions& options,
   }
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
-  if (!in_memory) options.on_network(conducting.run_id, bus.url());
+  if (!in_memory) {
+    const std::jthread alive = KeepAlive(hosts.get());  // on_network may wait for a person
+    options.on_network(conducting.run_id, bus.url());
+  }
   runtime::Apply(options.traffic, SenderOn(bus.url()), bus);
   if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);

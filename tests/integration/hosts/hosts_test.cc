@@ -66,6 +66,19 @@ TEST_F(EnteredHostsTest, LeaveNothingBehindAfterTheRunnersDeath) {
   ExpectNothingIsLeftOfARunnerThatWasKilled(lab(), Enter());
 }
 
+TEST_F(EnteredHostsTest, NeedAnAddressForTheRelayIfTheyAreReachedOverIpv6) {
+  const std::string ssh = folder_.File("ipv6");
+  std::ofstream(ssh) << "for command; do :; done\n"
+                        "export SSH_CONNECTION='fd00::1 1 fd00::2 22'\n"
+                        "exec sh -c \"$command\"\n";
+  std::vector<std::string> places = OnLab2({"fusion"});
+  places.emplace_back("--relay");
+  EXPECT_THAT(
+      Failure("sh '" + ssh + "'", places),
+      HasSubstr("lab2 reaches this machine over IPv6 (fd00::1), but a relay needs IPv4; give "
+                "an IPv4 address: --relay-at ADDRESS"));
+}
+
 TEST_F(EnteredHostsTest, UseTheRelayWhereThereIsNoMulticast) {
   ExpectTheRelayCarriesARunWithoutMulticast(lab(), Enter());
 }
