@@ -101,7 +101,8 @@ void DiagnosticList::Throw(const std::vector<Source>& sources, std::string_view 
       counter = LineCounter(source.text);
     }
     entry.mistake.file = source.name;
-    entry.mistake.override_number = entry.place.source;
+    // An override has no lines. The other sources are files.
+    entry.mistake.override_number = source.has_lines ? 0 : entry.place.source;
     if (source.has_lines) {
       counter.AdvanceTo(entry.place.offset);
       entry.mistake.line = counter.line();

@@ -19,7 +19,7 @@ struct LabHostSection {
   FOGLINE_FIELD(std::string, programs, "",
                 "Folder of Fogline's programs there; a relative folder is relative to the home "
                 "folder. Empty: the PATH there.");
-  FOGLINE_FIELD(std::vector<std::string>, roles, {}, {0, 8},
+  FOGLINE_FIELD(std::vector<std::string>, roles, {}, {0, 31},
                 "Roles that run there: any but the recorder.");
 };
 

@@ -131,6 +131,15 @@ TEST_F(RecordedLeadTest, NamesEveryCellThatIsNoNumber) {
             "6 errors; what is allowed: fogline check --explain /lead/recorded/file");
 }
 
+TEST_F(RecordedLeadTest, HasMistakesThatAreThoseOfNoOverride) {
+  try {
+    SpeedsOf("t,v\n10,fast\n", {"/steps=4"});
+    ADD_FAILURE() << "the file is refused";
+  } catch (const ScenarioError& error) {
+    for (const Diagnostic& mistake : error.diagnostics()) EXPECT_EQ(mistake.override_number, 0);
+  }
+}
+
 TEST_F(RecordedLeadTest, RefusesAnEmptyLineBetweenRows) {
   EXPECT_THAT(ErrorOf("t,v\n10,1\n\n12,1\n"),
               HasSubstr("data/lead.csv:3:1: error: /lead/recorded/file: an empty line"));
