@@ -80,7 +80,7 @@ on any transport.
 This package has the programs, the scenarios and a systemd unit for roles.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, liblcm-dev, libsodium-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, liblcm-dev, librandom123-dev, libsodium-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "fogline (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "distributed testbed for traded control in fog (development files)
 Fogline runs each part of a car as a process on an LCM network.

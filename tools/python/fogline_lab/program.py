@@ -251,7 +251,7 @@ def sweep(scenario: str | os.PathLike[str], grid: Mapping[str, Any] | None = Non
     with tempfile.TemporaryDirectory() as folder:
         file = os.fspath(out) if out is not None else str(Path(folder) / "sweep.csv")
         call_json("sweep", *words, "--out", file, progress=progress)
-        return pandas.read_csv(file)
+        return pandas.read_csv(file, float_precision="round_trip")  # every number is exact
 
 
 def _grid(grid: Mapping[str, Any] | None) -> Iterable[str]:
