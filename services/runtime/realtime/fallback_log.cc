@@ -65,9 +65,9 @@ const Fallback* FallbackLog::Add(const status_t& status) {
     // changes nothing.
     if (state == InputState::kLost || state == InputState::kOk) known_state = state;
   }
-  // A restarted process that has not computed a step yet does not know the fallback of its
-  // predecessor.
-  const bool computes = status.state != status_t::WAITING && status.state != status_t::READY;
+  // A restarted process that has not computed a step yet, or has failed, does not know the fallback
+  // of its predecessor.
+  const bool computes = status.state == status_t::RUNNING || status.state == status_t::DONE;
   std::string does;
   if (computes && status.fallback != known.does) {
     does = status.fallback.empty() ? "as usual again" : EscapeControls(status.fallback);

@@ -106,7 +106,8 @@ TEST_F(FallbackLogTest, DoesNotSayThatAFallbackHasEndedBecauseItsProcessWasResta
   Add(Said("arbitrator", 30, {{"TRACK", kLost}}, "the human drives"));
   status_t next = Said("arbitrator", 0, {});
   next.instance = 2;
-  for (const std::int8_t state : {status_t::WAITING, status_t::READY}) {
+  for (const std::int8_t state :
+       {status_t::WAITING, status_t::READY, status_t::FAILED, status_t::LEFT}) {
     next.state = state;
     EXPECT_EQ(Add(next), "");
   }
