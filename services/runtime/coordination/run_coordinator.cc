@@ -25,9 +25,10 @@ constexpr Duration kAskRecorderEvery = milliseconds(5);
 // In real time, a STATUS is refused if its step is more than this many steps above the number of
 // periods since the run began (NewestPossible()). We chose this margin.
 constexpr std::int64_t kEarly = 2;
-// The largest difference between the rates of two machines' clocks. Linux lets NTP change the rate
-// by 500 ppm at most (adjtimex(2)), and a crystal is off by less than 100 ppm. Two machines may
-// differ by twice the sum, 1200 ppm. We round up.
+// The largest difference between the rates of two machines' clocks. The kernel's NTP discipline
+// changes the rate by 500 ppm at most (adjtimex(2)), and a crystal is off by less than 100 ppm. So
+// two machines may differ by twice the sum, 1200 ppm. We round up. A daemon that changes the length
+// of a tick can change the rate by more.
 constexpr double kClockDrift = 2e-3;
 
 std::optional<Role> RoleNamed(std::string_view name) {

@@ -184,7 +184,11 @@ class Service {
   void Seek(TimePoint now) {
     LimitWait(now);
     if (!MaySeek() || !OpenSeeker(now)) return;
-    if (seeker_->InVain(now)) return GoBack("no message of the announced run has come");
+    if (seeker_->InVain(now)) {
+      return GoBack(
+          news().full ? fmt::format("the announced run has its {} already", NameOf(arguments_.role))
+                      : "no message of the announced run has come");
+    }
     const auto run = seeker_->Look(now);
     if (!run) return;
     GoTo(*run);
