@@ -48,9 +48,9 @@ class RolePlace {
 
   /// Kills a process that StartRole() has started.
   virtual void Kill(pid_t pid) = 0;
-  /// A number that grows while a process runs, and stays the same while it hangs; nullopt if
-  /// unknown. The number is the processor time of the main thread, in ns, plus its number of
-  /// context switches.
+  /// A number that grows while the main thread of a process runs, also in an endless loop; nullopt
+  /// if unknown. The number is the processor time of this thread, in ns, plus its number of context
+  /// switches.
   virtual std::optional<std::int64_t> ActivityOf(pid_t pid) = 0;
   /// The reason why the state of the processes is unknown at present; "" if it is known.
   virtual std::string WhyOutOfSight() const { return ""; }

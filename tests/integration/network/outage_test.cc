@@ -247,7 +247,8 @@ TEST_F(OutageTest, ARoleThatCouldSendNothingWhileItWaitedTakesPart) {
   LastFor(milliseconds(5000));
   // WHEN a run calls it, and the driver can send again a second later
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver"})));
-  LastFor(milliseconds(1000));
+  ASSERT_TRUE(run.WaitForErr("waiting for the driver")) << run.Err();
+  LastFor(milliseconds(1000));  // the runner sends RUN every 50 ms
   lab[1].Do("nft delete table inet reload");
   // THEN the driver takes part in this run
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());

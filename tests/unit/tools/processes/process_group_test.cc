@@ -86,21 +86,30 @@ TEST(ProcessGroupTest, KillsOneOfItsProcesses) {
   group.Kill(getpid());  // this process is not in the group, so it goes on
 }
 
+/// The state of a process, such as 'T' for a stopped one. /proc/PID/stat is "4711 (name) S ...".
+char StateOf(pid_t pid) {
+  const std::string stat = Content("/proc/" + std::to_string(pid) + "/stat");
+  return stat.at(stat.rfind(')') + 2);
+}
+
 TEST(ProcessGroupTest, HasActivityWhileAProcessComputesAndNoneWhileItIsStopped) {
   ProcessGroup group;
   const pid_t pid = StartScript(group, Role::kWorld, "while :; do :; done");
-  const auto pause = [] { std::this_thread::sleep_for(milliseconds(300)); };
-  // The subject of the test is what happens within a pause.
-  for (int i = 0; i < 3; ++i) {
-    const auto before = group.ActivityOf(pid);
-    ASSERT_TRUE(before);
-    pause();
-    EXPECT_GT(group.ActivityOf(pid), before);
+  const auto begin = group.ActivityOf(pid);
+  ASSERT_TRUE(begin);
+  // The process has no more than a few context switches in the time of this test. So only its
+  // processor time, in ns, makes the number grow by this much.
+  constexpr std::int64_t kMuch = 10'000'000;
+  const TimePoint end = Clock::now() + kPatience;
+  while (*group.ActivityOf(pid) < *begin + kMuch && Clock::now() < end) {
+    std::this_thread::sleep_for(kLookEvery);
   }
+  EXPECT_GE(*group.ActivityOf(pid), *begin + kMuch);
   kill(pid, SIGSTOP);
-  pause();
+  while (StateOf(pid) != 'T' && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   const auto stopped = group.ActivityOf(pid);
-  pause();
+  // The test is about this pause: a stopped process has no activity in it.
+  std::this_thread::sleep_for(milliseconds(300));
   EXPECT_EQ(group.ActivityOf(pid), stopped);
   group.Kill(pid);
   CollectUntil(group, 1);
