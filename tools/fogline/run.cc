@@ -288,14 +288,18 @@ int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
 int RunAndView(RunArguments& arguments) {
   runner::RunOptions& options = arguments.options;
   processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));
-  options.on_network = [&viewer](std::int64_t, const std::string& url) { viewer.ShowNetwork(url); };
+  bool has_network = false;
+  options.on_network = [&](std::int64_t, const std::string& url) {
+    has_network = true;
+    viewer.ShowNetwork(url);
+  };
   const int code = RunShown(arguments, viewer);
   std::fflush(stdout);
   std::error_code missing;  // a run that failed before its first step has no log
   if (!std::filesystem::exists(options.log, missing)) return code;
   if (viewer.Runs()) {
     viewer.ShowLog(options.log);
-  } else if (!WasInterrupted()) {  // for example, --resume of a complete log makes no run
+  } else if (!has_network) {  // --resume of a complete log makes no run
     Notice(fmt::format("--view: no page was opened; fogline view {} shows the log",
                        PathText(options.log)));
   }
