@@ -40,7 +40,8 @@ std::array<AdaptiveNoise, Fusion::kNumValues> Fusion::MakeNoises(const FusionSec
 }
 
 Fusion::Fusion(const Scenario& scenario)
-    : ekf_(scenario.step_s, scenario.fusion.jerk_density_m2ps5),
+    : step_s_(scenario.step_s),
+      ekf_(scenario.step_s, scenario.fusion.jerk_density_m2ps5),
       gating_(scenario.fusion.gating),
       gates_(MakeGates(scenario.fusion)),
       adapts_(scenario.fusion.adaptive_noise != NoiseAdaptation::kNone),
@@ -67,7 +68,9 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   for (const Value value : {kRadarRange, kRadarRangeRate, kLidarRange}) {
     Record(value, 0, 0, track_t::ABSENT);
   }
-  if (started_) ekf_.Predict(ego.acceleration_mps2);
+  if (started_) Predict(ego);
+  last_step_ = ego.header.step;
+  last_speed_mps_ = ego.speed_mps;
   if (policy_) selection_ = Judge(radar, lidar);
   if (started_) {
     if (radar.valid) CorrectByRadar(radar);
@@ -77,6 +80,16 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   }
   if (started_) Report(ego.acceleration_mps2);
   return out_;
+}
+
+// In real time, the steps that lack an input are left out. The host's acceleration in these steps
+// is unknown, but its mean follows from the speeds.
+void Fusion::Predict(const ego_t& ego) {
+  const std::int64_t steps = ego.header.step - last_step_;
+  if (steps <= 1) return ekf_.Predict(ego.acceleration_mps2);
+  const double mean_mps2 =
+      (ego.speed_mps - last_speed_mps_) / (static_cast<double>(steps) * step_s_);
+  for (std::int64_t i = 0; i < steps; ++i) ekf_.Predict(mean_mps2);
 }
 
 void Fusion::Start(const radar_t& radar, const lidar_t& lidar) {

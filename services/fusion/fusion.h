@@ -45,9 +45,9 @@ class Fusion {
   /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
-  /// The track of this step. Call Step() once per step, in the order of steps, beginning with the
-  /// first step. `ego` has the host's acceleration from the previous step to this step. The result
-  /// is valid until the next call.
+  /// The track of this step. Call Step() once per step, in the order of steps. In real time, steps
+  /// may be left out. `ego` has the host's acceleration from the previous step to this step. The
+  /// result is valid until the next call.
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
  private:
@@ -64,6 +64,8 @@ class Fusion {
   static std::array<Gate, kNumValues> MakeGates(const FusionSection& section);
   static std::array<AdaptiveNoise, kNumValues> MakeNoises(const FusionSection& section);
 
+  /// Predicts the track from the step of the last call to this step.
+  void Predict(const ego_t& ego);
   /// Begins the track, if a selected sensor has a value.
   void Start(const radar_t& radar, const lidar_t& lidar);
   /// Begin the track with this measurement; return false if the target is too far to the side.
@@ -81,6 +83,7 @@ class Fusion {
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);
 
+  double step_s_;
   Ekf ekf_;
   bool gating_;
   std::array<Gate, kNumValues> gates_;
@@ -96,6 +99,8 @@ class Fusion {
   policies::SensorSelection selection_;
   std::optional<double> true_gap_m_;
   bool started_ = false;
+  std::int64_t last_step_ = 0;  // step of the last call, and the host's speed in it
+  double last_speed_mps_ = 0;
   track_t out_{};
 };
 

@@ -39,6 +39,25 @@ TEST(FusionTest, HasNoTrackBeforeTheFirstMeasurement) {
   }
 }
 
+TEST(FusionTest, PredictsAcrossStepsThatWereLeftOut) {
+  for (const double host_mps2 : {0.0, -2.0}) {
+    SCOPED_TRACE(host_mps2);
+    fusion::Fusion fusion{Scenario()};
+    for (std::int64_t step = 0; step <= 20; ++step) {
+      Messages m = At(step, 60 - static_cast<double>(step), -10);
+      m.ego.speed_mps = 20;
+      Step(fusion, m);
+    }
+    // The host brakes in the 0.2 s from step 20 to step 22.
+    Messages m = At(22, 38 - host_mps2 * 0.02, -10 - host_mps2 * 0.2);
+    m.ego.speed_mps = 20 + host_mps2 * 0.2;
+    m.ego.acceleration_mps2 = host_mps2;
+    const track_t& track = Step(fusion, m);
+    EXPECT_NEAR(track.innovation[0], 0, 1e-6);
+    EXPECT_NEAR(track.innovation[1], 0, 1e-6);
+  }
+}
+
 TEST(FusionTest, StartsWithTheRadarsValuesAndTheirNoise) {
   Scenario scenario;
   scenario.fusion.radar_range_std_m = 0.3;
