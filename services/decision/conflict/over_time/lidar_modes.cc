@@ -27,7 +27,7 @@ double NormalDensity(double x, double variance) {
 
 LidarModes::LidarModes(const ConflictParameters& parameters) : parameters_(parameters) {}
 
-LidarModes::Probabilities LidarModes::Likelihoods(const StatedRange& reference,
+LidarModes::Probabilities LidarModes::Likelihoods(const StatedRange& reference, double offset_m,
                                                   const StatedRange& lidar) const {
   Probabilities likelihoods = parameters_.echo_probability;
   if (!lidar.valid) {
@@ -41,7 +41,7 @@ LidarModes::Probabilities LidarModes::Likelihoods(const StatedRange& reference,
   const double fog_m = parameters_.fog_return_m + kScatterMean * scatter_m;
   const double stray_pm = 1 / parameters_.stray_range_m;
 
-  likelihoods[kClean] *= NormalDensity(reference.range_m - lidar.range_m - parameters_.offset_m,
+  likelihoods[kClean] *= NormalDensity(reference.range_m - lidar.range_m - offset_m,
                                        variance_m2 + reference_std_m * reference_std_m);
   likelihoods[kFogReturn] *=
       (1 - parameters_.stray_share) *
@@ -59,9 +59,11 @@ const LidarModes::Probabilities& LidarModes::Step(const Evidence& evidence) {
       next[j] += parameters_.mode_transition[i][j] * probabilities_[i];
     }
   }
-  const StatedRange& reference = evidence.radar.valid ? evidence.radar : evidence.prediction;
+  const bool has_radar = evidence.radar.valid;
+  const StatedRange& reference = has_radar ? evidence.radar : evidence.prediction;
+  const double offset_m = has_radar ? parameters_.offset_m : 0;  // the offset is that of the radar
   if (reference.valid || !evidence.lidar.valid) {
-    const Probabilities likelihoods = Likelihoods(reference, evidence.lidar);
+    const Probabilities likelihoods = Likelihoods(reference, offset_m, evidence.lidar);
     double sum = 0;
     for (std::size_t j = 0; j < next.size(); ++j) {
       next[j] *= likelihoods[j];

@@ -21,11 +21,12 @@ namespace fogline::conflict {
 ///     clean       N(r - z; offset, S)
 ///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R
 ///     dropout     1/R                                       an echo can be anywhere
-/// N(x; mean, variance) is a Gaussian density. S is the variance of r - z, and s_z the standard
-/// deviation that the LiDAR states. E and V are the mean and the variance of fog_scatter_m times a
-/// random number with the distribution Beta(2, 20). e is the share of stray echoes, which lie
-/// anywhere in the range R (conflict_parameters.h has r* and all other numbers). The likelihood of
-/// no echo is 1 - P_echo,j. A missing LiDAR value is evidence of a mode, so
+/// r is the range of the radar. If the radar has no value, r is the filter's prediction, and the
+/// offset is 0. N(x; mean, variance) is a Gaussian density. S is the variance of r - z, and s_z the
+/// standard deviation that the LiDAR states. E and V are the mean and the variance of fog_scatter_m
+/// times a random number with the distribution Beta(2, 20). e is the share of stray echoes, which
+/// lie anywhere in the range R (conflict_parameters.h has r* and all other numbers). The likelihood
+/// of no echo is 1 - P_echo,j. A missing LiDAR value is evidence of a mode, so
 /// ConflictParameters::missing has no effect. If there is an echo but no reference range, only the
 /// Markov chain advances.
 class LidarModes {
@@ -38,7 +39,9 @@ class LidarModes {
   void Reset() { probabilities_ = {1, 0, 0}; }
 
  private:
-  Probabilities Likelihoods(const StatedRange& reference, const StatedRange& lidar) const;
+  /// @param offset_m mean of `reference` - `lidar` if no sensor has a fault
+  Probabilities Likelihoods(const StatedRange& reference, double offset_m,
+                            const StatedRange& lidar) const;
 
   ConflictParameters parameters_;
   Probabilities probabilities_{1, 0, 0};

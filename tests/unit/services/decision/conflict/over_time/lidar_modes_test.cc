@@ -76,6 +76,15 @@ TEST(LidarModesTest, TakesThePredictionWhereTheRadarHasNoValue) {
   EXPECT_GT(measure.Step(WithoutRadar(At(30, 4.3))), 0.99);
 }
 
+TEST(LidarModesTest, ThePredictionHasNotTheOffsetOfTheRadar) {
+  const auto score = [](double lidar_m) {
+    conflict::LidarModeConflict measure({.offset_m = 2});
+    return measure.Step(WithoutRadar(At(30, lidar_m)));
+  };
+  EXPECT_LT(score(30), 0.05);
+  EXPECT_GT(score(28), 0.99);
+}
+
 TEST(LidarModesTest, AnEchoWithoutAnyReferenceSaysNothing) {
   conflict::LidarModes modes({});
   conflict::Evidence alone = WithoutRadar(At(30, 4.3));
