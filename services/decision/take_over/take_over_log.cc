@@ -234,7 +234,8 @@ void TakeOverLog::NoteUnasked(std::int8_t from, std::int8_t to) {
 }
 
 bool TakeOverLog::HidesRequest(const arbitration_t& command, std::int8_t from) const {
-  if (earliest_ == command.header.step) return false;
+  const bool was_hidden = last_sent_ == arbitration_t::EMERGENCY_BRAKING;
+  if (earliest_ == command.header.step && !was_hidden) return false;
   const bool has_answered = from == arbitration_t::HUMAN || from == arbitration_t::RECOVERING;
   if (InMinimalRisk(command.mode)) return from == arbitration_t::AUTOMATION;
   if (command.mode == arbitration_t::REQUEST_URGENT) return from != arbitration_t::REQUEST;

@@ -204,6 +204,22 @@ TEST(TakeOverLogTest, TakesARequestBehindEmergencyBrakingForTheSame) {
               ElementsAre(take_over::TakeOverRequest{.requested = 1, .acknowledged = 6}));
 }
 
+TEST(TakeOverLogTest, TakesARequestThatBeginsBehindEmergencyBrakingNotForTheOneBefore) {
+  for (const std::int8_t next : {arbitration_t::MRM_EMERGENCY, arbitration_t::REQUEST_URGENT}) {
+    take_over::TakeOverLog log;
+    Add(log, Command(0, arbitration_t::AUTOMATION));
+    Add(log, Command(1, arbitration_t::REQUEST));
+    Add(log, Command(2, arbitration_t::HANDOVER));
+    Add(log, Command(3, arbitration_t::RECOVERING));
+    Add(log, Command(4, arbitration_t::HUMAN));
+    Add(log, Command(5, arbitration_t::AUTOMATION));
+    const auto before = log.requests();
+    Add(log, Emergency(6, arbitration_t::EMERGENCY_BRAKING));
+    Add(log, Command(7, next));
+    EXPECT_EQ(log.requests(), before);
+  }
+}
+
 TEST(TakeOverLogTest, SaysWhoHasAcknowledged) {
   const take_over::TakeOverEntry answer{
       .from = arbitration_t::REQUEST, .to = arbitration_t::HANDOVER, .logged = "acknowledgement"};
