@@ -145,6 +145,8 @@ std::string UnknownVerb(const CLI::App& app) {
 void RefuseIgnoredValues(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) {
     for (CLI::Option* option : verb->get_options()) {
+      const std::string type = option->get_type_name();
+      if (type.starts_with("INT") || type.starts_with("UINT")) runtime::ReadAsDecimal(*option);
       runtime::RefuseEmptyText(*option);
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
     }

@@ -24,6 +24,7 @@ std::string NoSuchVerb(const CLI::App& command, const std::string& word);
 /// - an empty text for an option or argument. It often comes from a shell variable that is not set,
 ///   as in --log "$UNSET".
 /// - a value for a flag, as in --force=no.
+/// Whole numbers are read as decimal, also with leading zeros.
 void RefuseIgnoredValues(CLI::App& app);
 
 /// The words of a command line. A word such as "--log=" becomes two words, "--log" and "". Without

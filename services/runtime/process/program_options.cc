@@ -1,5 +1,6 @@
 #include "services/runtime/process/program_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -17,14 +18,31 @@ namespace fogline::runtime {
 
 void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
                     const std::string& help) {
-  app.add_option(name, run_id, help)
-      ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
+  CLI::Option& option = *app.add_option(name, run_id, help);
+  ReadAsDecimal(option);
+  option.check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
       ->check([](const std::string& text) {  // CLI11 changes a number that is too large
         return ParseNumber<std::int64_t>(text)
                    ? std::string()
                    : text + " is no id: a whole number from 1 to 9223372036854775807";
       })
       ->type_name("ID");
+}
+
+void ReadAsDecimal(CLI::Option& option) {
+  option.transform(CLI::Validator(
+      [](std::string& text) -> std::string {
+        const bool is_negative = text.starts_with('-');
+        const std::string digits = text.substr(is_negative ? 1 : 0);
+        // Texts with other characters are no whole number, or have a prefix such as 0x.
+        if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) {
+          return QuoteShort(text) + " is no whole number";
+        }
+        const std::size_t first = std::min(digits.find_first_not_of('0'), digits.size() - 1);
+        text = (is_negative ? "-" : "") + digits.substr(first);
+        return "";
+      },
+      ""));
 }
 
 void RefuseEmptyText(CLI::Option& option) {
@@ -100,7 +118,9 @@ void ProgramOptions::Flag(const std::string& name, bool& value, const std::strin
 
 void ProgramOptions::Count(const std::string& name, std::size_t& value, const std::string& help,
                            int least, int most) {
-  app_->add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+  CLI::Option& option = *app_->add_option(name, value, help);
+  ReadAsDecimal(option);
+  option.check(CLI::Range(least, most))->capture_default_str();
 }
 
 void ProgramOptions::Seconds(const std::string& name, double& value, const std::string& help,

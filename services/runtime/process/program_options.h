@@ -24,6 +24,10 @@ namespace fogline::runtime {
 void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
                     const std::string& help);
 
+/// Makes a command line read the value of this option, a whole number, as decimal. CLI11 alone
+/// reads 010 as 8, and 0x10 as 16.
+void ReadAsDecimal(CLI::Option& option);
+
 /// Makes a command line refuse an empty text as the value of this option, before the option's own
 /// checks.
 void RefuseEmptyText(CLI::Option& option);

@@ -159,6 +159,7 @@ class IgnoredValuesTest : public testing::Test {
     run->add_option("--set", set_)->allow_extra_args(false);
     run->add_option("--explain", explain_);
     run->add_option("--pace", pace_)->check(NumberIn(0, 10));
+    run->add_option("--jobs", jobs_);
     run->add_flag("--force", force_);
     RefuseIgnoredValues(app_);
   }
@@ -188,8 +189,21 @@ class IgnoredValuesTest : public testing::Test {
   std::vector<std::string> set_;
   std::optional<std::string> explain_;
   double pace_ = 0;
+  int jobs_ = 0;
   bool force_ = false;
 };
+
+TEST_F(IgnoredValuesTest, WholeNumbersAreDecimal) {
+  for (const auto& [text, jobs] : {std::pair("010", 10), {"08", 8}, {"0", 0}, {"-07", -7}}) {
+    EXPECT_EQ(Of({"run", "paper.json", "--jobs", text}), "");
+    EXPECT_EQ(jobs_, jobs) << text;
+  }
+  for (const std::string text : {"0x10", "1e3", "2.5", "two"}) {
+    EXPECT_EQ(Of({"run", "paper.json", "--jobs", text}), "fogline run: error: --jobs: \"" + text +
+                                                             "\" is no whole number (see fogline "
+                                                             "run --help)");
+  }
+}
 
 TEST_F(IgnoredValuesTest, EmptyTextsAreRefusedWithTheNameOfTheirOption) {
   for (const char* name : {"--log", "--output", "--set", "--explain", "--pace"}) {
