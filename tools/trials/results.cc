@@ -105,12 +105,13 @@ void Results::CheckKept() const {
   if (kept.error.empty() && kept.text == plan_.text) return;
   throw InputError(
       fmt::format("{}: error: --results: the experiment began with another version of {}, which is "
-                  "{}; go on with that file, or give another folder",
-                  PathText(folder_), PathText(plan_.file), PathText(Kept())));
+                  "{}; copy that file to {} to go on, or give another folder",
+                  PathText(folder_), PathText(plan_.file), PathText(Kept()), PathText(plan_.file)));
 }
 
 void Results::Create() const {
-  RequireFolderOf(folder_, "--results");
+  // "results/" is the folder "results".
+  RequireFolderOf(folder_.has_filename() ? folder_ : folder_.parent_path(), "--results");
   std::error_code failed;
   std::filesystem::create_directory(folder_, failed);
   if (failed) {

@@ -43,6 +43,11 @@ export function connect(onState, onBroken) {
     };
   };
   open();
+  // The next session has another token. If its address is opened in this tab, the browser does not
+  // load the page again by itself, because only the fragment differs.
+  addEventListener("hashchange", () => {
+    if (location.hash.includes("token=")) location.reload();
+  });
   return (message) => {
     if (socket.readyState !== WebSocket.OPEN) return false;
     socket.send(JSON.stringify(message));

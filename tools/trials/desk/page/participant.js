@@ -25,10 +25,12 @@ function scaleOf(item, index) {
   const steps = Math.round((item.max - item.min) / item.step);
   const marks = [];
   for (let i = 0; i <= steps; ++i) {
-    // The value is rounded to 12 digits, because in binary 0.1 + 0.2 is not exactly 0.3. The last
-    // mark is set to the end of the scale, because a rounded step, such as 0.1428571429, does not
-    // divide the scale exactly.
-    const value = String(i === steps ? item.max : Number((item.min + i * item.step).toPrecision(12)));
+    // The value is rounded to 12 digits, because in binary 0.1 + 0.2 is not exactly 0.3. A value that
+    // is only a rounding error is 0. The last mark is set to the end of the scale, because a rounded
+    // step, such as 0.1428571429, does not divide the scale exactly.
+    const sum = item.min + i * item.step;
+    const rounded = Math.abs(sum) < 1e-6 * item.step ? 0 : Number(sum.toPrecision(12));
+    const value = String(i === steps ? item.max : rounded);
     marks.push(make("label", {},
       make("input", {type: "radio", name: `item-${index}`, value}), value));
   }
