@@ -18,13 +18,15 @@ std::optional<double> Root(std::optional<double> mean_square) {
 }
 
 /// The sample of a step without HOST_COMMAND, with the values of the HOST_COMMAND before.
-Sample WithCommandOf(const Sample& before, const Sample& sample) {
+/// @param stops whether the vehicle has lost this input, and makes a minimal risk manoeuvre
+Sample WithCommandOf(const Sample& before, const Sample& sample, bool stops) {
   Sample filled = sample;
   filled.command_mps2 = before.command_mps2;
   filled.lambda_automation = before.lambda_automation;
   filled.lambda_human = before.lambda_human;
   filled.doc = before.doc;
   filled.threshold = before.threshold;
+  if (stops) filled.lambda_automation = filled.lambda_human = 0;
   return filled;
 }
 
@@ -44,16 +46,21 @@ double CompromisedSafety(const Sample& sample) {
 
 MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
     : handover_s_(scenario.measures.handover_s),
+      command_lost_s_(scenario.health.lost_periods * scenario.step_s),
       host_(scenario.measures),
       follower_(scenario.measures),
       detection_(scenario),
       track_(scenario) {}
 
-// In real time a step may lack HOST_COMMAND. It counts like the step before it, as in the measures
-// of take-overs.
+// In real time a step may lack HOST_COMMAND. The vehicle then keeps the last command until its
+// input counts as lost.
 void MetricsAccumulator::Add(const Sample& sample) {
-  if (!std::isnan(sample.lambda_human)) return AddStep(sample);
-  AddStep(WithCommandOf(previous_.value_or(kBeforeTheFirstCommand), sample));
+  if (!std::isnan(sample.lambda_human)) {
+    commanded_s_ = sample.time_s;
+    return AddStep(sample);
+  }
+  const bool stops = sample.time_s - commanded_s_.value_or(sample.time_s) > command_lost_s_;
+  AddStep(WithCommandOf(previous_.value_or(kBeforeTheFirstCommand), sample, stops));
 }
 
 // The command of a step is applied only in the next step. So the jerk of a step belongs to the

@@ -216,6 +216,9 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
 }
 
 TEST(MeasureTest, AStepWithoutACommandCountsLikeTheStepBefore) {
+  Scenario scenario;
+  scenario.step_s = kStep_s;
+  scenario.health.lost_periods = 2.5;
   auto run = QuietRun(6);
   for (metrics::Sample& sample : run) {
     sample.lambda_human = 1;
@@ -223,21 +226,26 @@ TEST(MeasureTest, AStepWithoutACommandCountsLikeTheStepBefore) {
     sample.doc = 0.9;
     sample.threshold = 0.5;
   }
-  const metrics::RunMetrics whole = metrics::Measure(run);
+  const metrics::RunMetrics whole = metrics::Measure(run, scenario);
   for (const std::size_t k : {2, 4}) {
     run[k].lambda_human = run[k].lambda_automation = run[k].doc = run[k].threshold =
         run[k].command_mps2 = kNone;
   }
-  const metrics::RunMetrics m = metrics::Measure(run);
+  const metrics::RunMetrics m = metrics::Measure(run, scenario);
   EXPECT_EQ(m.transfers, 0);
   EXPECT_EQ(m.rhe_pct, 100);
   EXPECT_EQ(m.human_time_s, whole.human_time_s);
   EXPECT_EQ(m.max_handover_jerk_mps3, std::nullopt);
   EXPECT_EQ(m.detection.wrong_human_s, whole.detection.wrong_human_s);
   EXPECT_EQ(m.detection.false_alarms_ph, whole.detection.false_alarms_ph);
+  // A command that is too old is lost, and the vehicle stops by itself.
+  auto silent = run;
+  for (std::size_t k = 1; k < silent.size(); ++k) silent[k].lambda_human = kNone;
+  EXPECT_EQ(metrics::Measure(silent, scenario).human_time_s, 3 * kStep_s);
+  EXPECT_EQ(metrics::Measure(silent, scenario).minimal_risk_s, 2 * kStep_s);
   // Before the first command, the automation drives.
   run[0].lambda_human = run[0].lambda_automation = run[0].doc = run[0].threshold = kNone;
-  EXPECT_EQ(metrics::Measure(run).human_time_s, whole.human_time_s - kStep_s);
+  EXPECT_EQ(metrics::Measure(run, scenario).human_time_s, whole.human_time_s - kStep_s);
 }
 
 TEST(MeasureTest, JerkOfAHandOverAlsoFollowsTheBeginOfAMinimalRiskManoeuvre) {
