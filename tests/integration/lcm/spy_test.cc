@@ -2,11 +2,14 @@
 // lcm_tools_test.cc tests the contents of lcm-spy's window.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <fstream>
 
+#include "common/process/this_process.h"
+#include "services/runtime/discovery/beacon.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
@@ -201,29 +204,27 @@ TEST_F(SpyAtMeetingTest, WaitsForARunAndLooksWhereItIs) {
 }
 
 TEST_F(SpyAtMeetingTest, LooksAtTheNewestOfSeveralRuns) {
-  const ScratchFolder folder;
-  const auto command = [&folder](const std::string& log) {
-    return std::vector<std::string>{Program("fogline"),
-                                    "run",
-                                    "scenario/paper.json",
-                                    "--transport",
-                                    "udpm",
-                                    "--pace",
-                                    "1",
-                                    "--log",
-                                    folder.File(log)};
+  runtime::Bus bus(url_);
+  const auto announce = [&bus](std::int64_t run_id) {
+    beacon_t beacon{};
+    beacon.header.run_id = run_id;
+    beacon.began_us = run_id;
+    beacon.url = "udpm://239.255.76.67:" + std::to_string(7700 + run_id) + "?ttl=0";
+    beacon.host = HostName();
+    beacon.pid = getpid();
+    std::vector<std::uint8_t> bytes;
+    runtime::Encode(beacon, bytes);
+    bus.Publish(runtime::kBeaconChannel, bytes);
   };
-  Background older(command("older.lcm"));
-  ASSERT_TRUE(older.WaitForErr("processes: ", kPatience)) << older.Err();
-  Background newer(command("newer.lcm"));
-  ASSERT_TRUE(newer.WaitForErr("processes: ", kPatience)) << newer.Err();
-  const std::string err = newer.Err();
-  const std::size_t at = err.find(" on ") + 4;
-  const std::string url = err.substr(at, err.find('\n') - at);
-  for (int k = 0; k < 4; ++k) {
-    const Outcome spy = RunCommand(parts_.Command(Program("fogline"), {}));
-    EXPECT_THAT(spy.out, HasSubstr(" --lcm-url=" + url + "\n"));
+  // The announcement of the older run comes first.
+  Background spy(parts_.Command(Program("fogline"), {}));
+  const TimePoint end = Clock::now() + kPatience;
+  while (IsAlive(spy.pid()) && Clock::now() < end) {
+    for (const std::int64_t run_id : {1, 2}) announce(run_id);
+    bus.Wait(milliseconds(20));
   }
+  EXPECT_EQ(spy.Wait(), 0) << spy.Err();
+  EXPECT_THAT(spy.Out(), HasSubstr(" --lcm-url=udpm://239.255.76.67:7702?ttl=0\n"));
 }
 
 TEST_F(SpyAtMeetingTest, LooksAtTheMeetingAddressWhereThereIsTraffic) {

@@ -86,8 +86,8 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
 /// Waits for traffic that can be shown. @return the network of this traffic
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
-  // In this time every announced run is found, so the newest one is known. An announced run takes
-  // precedence over other traffic.
+  // The time of two announcements. If no runner is held up, every run is known by then, and so is
+  // the newest one. An announced run takes precedence over other traffic.
   constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
   constexpr Duration kLookEvery = milliseconds(50);
   runtime::Bus bus(arguments.network.Url());

@@ -107,9 +107,14 @@ LiveReplay::LiveReplay(CLI::App& verb) {
   verb.add_flag("--quiet", quiet_, "Print only errors on stderr")->needs(live);
 }
 
-std::string LiveReplay::Transport() const {
-  if (!transport_.empty()) return transport_;
-  return runtime::UrlOfEnvironment().value_or("udpm");
+void LiveReplay::ChooseTransport(runner::RunOptions& options) const {
+  options.transport = transport_.empty() ? "udpm" : transport_;
+  if (!transport_.empty()) return;
+  const auto url = runtime::UrlOfEnvironment();
+  if (!url) return;
+  options.transport_source = "LCM_DEFAULT_URL";
+  runtime::CheckUrl(options.transport_source, *url);
+  options.transport = *url;
 }
 
 int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
@@ -130,7 +135,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   }
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
   runner::RunOptions options;
-  options.transport = Transport();
+  ChooseTransport(options);
   options.traffic = runtime::WithKeyOfEnvironment({});
   runtime::Check(options.traffic);
   cli::RequireProcesses(options, "a live replay");
@@ -173,8 +178,9 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
                result.realtime ? cli::RealtimeText(*result.realtime) : "", PathText(options.log));
   }
   cli::SayAboutLog(recorded, run);
-  const int code = cli::EndOf(result, "replay");
-  return code == kDone && !run.complete ? kCheckFailed : code;
+  // In a run in real time, the messages that the recorded log lacks were not published either.
+  if (!run.complete) return kCheckFailed;
+  return cli::EndOf(result, "replay");
 }
 
 }  // namespace fogline

@@ -10,6 +10,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/runner/scenario_run.h"
+
 namespace fogline {
 
 class LiveReplay {
@@ -26,7 +28,8 @@ class LiveReplay {
           bool json) const;
 
  private:
-  std::string Transport() const;
+  /// Sets the network of the new run. @throws InputError if LCM_DEFAULT_URL is wrong
+  void ChooseTransport(runner::RunOptions& options) const;
 
   bool live_ = false;
   std::string channels_ = "RADAR,LIDAR";
