@@ -33,8 +33,8 @@ LogFront ReadFront(const std::filesystem::path& file);
 
 /// The steps of the run that a log contains.
 struct Remains {
-  // The log up to the end of the last complete step. In real time also the messages outside of
-  // steps that follow this step.
+  // The log up to the end of the last complete step. In real time the messages outside of steps
+  // that come directly after this step also belong to it.
   LogHead head;
   std::int64_t steps = 0;  // complete steps; in real time, steps that have ended
   std::int64_t last = 0;   // byte at which the last of these steps begins

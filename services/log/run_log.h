@@ -49,7 +49,7 @@ struct RunLog {
   //   already returned its step.)
   // - In lockstep: the log has all messages.
   bool ended = false;
-  // Whether `ended` would be true if the log had no incomplete event at its end.
+  // Whether only an incomplete event at the end of the log keeps `ended` from being true.
   bool ends_torn = false;
   // Whether `ended` is true and the log has every published message. In lockstep this is the same
   // as `ended`. In real time, STATUS messages in the log must show that no published message is

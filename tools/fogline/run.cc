@@ -214,7 +214,7 @@ std::vector<runtime::OtherBuild> OthersIn(const runner::LoggedRun& run,
   return others;
 }
 
-/// Whether the log lacks nothing but its seal, of which it may have a part. A computer that crashes
+/// Whether the log has all steps, and an incomplete event behind them. A computer that crashes
 /// while the seal is written leaves such a log.
 bool HasTornSeal(const runner::LoggedRun& run, const runner::ResumedLog& log,
                  const std::filesystem::path& file) {
@@ -242,7 +242,10 @@ runner::RunResult ResultOfWhole(const runner::ResumedLog& log, const runner::Run
     verification = replay::VerifyRun(options.log, run, OthersIn(run, options.external));
   }
   if (to_seal && verification && !verification->roles.empty() && verification->Holds()) {
-    if (!run.complete) log::EventLogWriter(options.log, run.events);
+    if (!run.complete) {
+      log::EventLogWriter(options.log, run.events);
+      run.ended = true;  // the seal says so
+    }
     sealer.Seal(run, {}, {.builds = BuildsOf(*verification)}, key);
   }
   return std::move(run.result);
@@ -299,7 +302,7 @@ int RunAndView(RunArguments& arguments) {
   if (!std::filesystem::exists(options.log, missing)) return code;
   if (viewer.Runs()) {
     viewer.ShowLog(options.log);
-  } else if (!has_network) {  // --resume of a complete log makes no run
+  } else if (!has_network && options.announce) {  // --resume of a complete log makes no run
     Notice(fmt::format("--view: no page was opened; fogline view {} shows the log",
                        PathText(options.log)));
   }

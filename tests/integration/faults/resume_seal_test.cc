@@ -11,6 +11,7 @@
 
 #include "services/graph.h"
 #include "services/log/event_log.h"
+#include "services/log/run_log.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/integration/faults/resume_fixture.h"
 
@@ -127,6 +128,11 @@ TEST_F(ResumeOfCompleteLogTest, SealsALogWhoseSealIsTorn) {
     std::filesystem::resize_file(log_, bytes);
     EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), kRoles.size() - 1);
     EXPECT_EQ(Digest()["seal"], "holds");
+    log::RunLogReader reader(log_);
+    while (reader.Next() != nullptr) {
+    }
+    EXPECT_TRUE(reader.run().complete);
+    EXPECT_EQ(reader.run().seal.value().says.complete, 1);
   }
 }
 
