@@ -108,24 +108,26 @@ Finding AssessRole(const Process& role, bool has_runner) {
 
 void ExamineProcesses(Findings& findings) {
   const std::map<pid_t, Process> processes = ReadProcesses();
-  std::map<pid_t, std::vector<const Process*>> runs;  // the roles of each runner
+  std::map<pid_t, std::vector<const Process*>> runs;  // the programs of each runner
   bool any = false;
   for (const auto& [pid, process] : processes) {
     if (IsRunner(process.program)) continue;
-    any = true;
     const auto parent = processes.find(process.parent);
     const bool has_runner = parent != processes.end() && IsRunner(parent->second.program);
     const Finding finding = AssessRole(process, has_runner);
     if (has_runner) runs[process.parent].push_back(&process);
     // A role of a run gets a line of its own only if it has a problem. Below, each run gets one
     // line for all its roles.
-    if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
+    if (has_runner && finding.level == Level::kOk) continue;
+    findings.push_back(finding);
+    any = true;
   }
   for (const auto& [runner, children] : runs) {
     // A runner also starts programs that are no roles: a relay, and the page of a log.
     const auto role = std::ranges::find_if(
         children, [](const Process* child) { return !child->Option("--run-id").empty(); });
     if (role == children.end()) continue;
+    any = true;
     findings.push_back(
         {"processes", Level::kOk,
          fmt::format("{} has a run with {} processes on {}", processes.at(runner).Describe(),

@@ -216,9 +216,8 @@ std::vector<report::ReportMetric> MetricsOf(const runner::RunResult& result) {
   return out;
 }
 
-/// The content of a run on the report's page. Moves the samples out of `run` if the log has no
-/// gaps.
-report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
+/// The content of a run on the report's page.
+report::ReportRun PageOf(const runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
   return {.name = name,
           .log = LogNameOf(run),

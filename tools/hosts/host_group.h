@@ -18,7 +18,8 @@ class HostGroup {
   explicit HostGroup(const RunPlan& plan);
 
   /// ADDRESS:PORT at which the relay of the run must listen; port 0: any free port.
-  /// @throws std::runtime_error if the other machines see this machine at different addresses
+  /// @throws std::runtime_error if the other machines see this machine at different addresses, or
+  ///     at one of IPv6
   std::string RelayPlace() const;
   /// Gives the key of the run to every machine. Each machine then checks whether it reaches the
   /// network of the run.

@@ -65,9 +65,10 @@ runtime::RoleBuilds OwnBuilds(bool in_memory) {
   return builds;
 }
 
-/// First sequence number of a runner that replaces another runner. Roles of the old runner may
-/// still be alive, and they obey the newest runner. A runner sends less than one message per
-/// microsecond, so the current time in microseconds exceeds every number of the old runner.
+/// First sequence number of a runner that replaces another runner, or whose run id may have been
+/// used before. Roles of the old runner may still be alive, and they obey the newest runner. A
+/// runner sends less than one message per microsecond, so the current time in microseconds exceeds
+/// every number of the old runner.
 std::int64_t NewerThanEveryRunner() {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -78,7 +79,6 @@ std::int64_t NewerThanEveryRunner() {
 /// connection ends meanwhile, the start of the roles there fails and says so.
 std::jthread KeepAlive(const hosts::HostGroup* hosts) {
   if (hosts == nullptr) return {};
-  static constexpr Duration kLookEvery = milliseconds(20);
   const SignalsBlocked blocked;  // only the runner's thread handles signals
   return std::jthread([hosts](const std::stop_token& stop) {
     while (!stop.stop_requested()) {

@@ -220,7 +220,7 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
 }
 
 bool IsOfRecording(const Scenario& scenario, std::string_view pointer) {
-  return scenario.lead.profile == LeadProfile::kRecorded &&
+  return scenario.lead.profile == LeadProfile::kRecorded && !scenario.lead.recorded.file.empty() &&
          (pointer == "/step_s" || pointer.starts_with("/lead/recorded/"));
 }
 

@@ -20,7 +20,7 @@ struct LabHostSection {
                 "Folder of Fogline's programs there; a relative folder is relative to the home "
                 "folder. Empty: the PATH there.");
   FOGLINE_FIELD(std::vector<std::string>, roles, {}, {0, 31},
-                "Roles that run there: any but the recorder.");
+                "Roles that run there: any but the recorder.");  // graph.h allows 31 roles
 };
 
 /// A laboratory, as its file describes it.

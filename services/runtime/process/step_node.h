@@ -197,10 +197,10 @@ class StepNode final : public Work {
     const auto* newest = NewestOf<I>(step);
     const auto input = &parts_.inputs.Of(kPlace<I>) - parts_.inputs.all().data();
     const InputState state = watch_->StateFor(static_cast<std::size_t>(input), step);
-    // A process may decide a step that is older than all its messages. Then it has no value,
-    // although the input is not lost.
-    const bool promises = Usable(state) && newest == nullptr;
-    return {.state = promises ? InputState::kAwaited : state, .newest = newest};
+    // A restarted process may decide a step that is older than all messages it has received. Then
+    // there is no message to use, although the input is not lost.
+    const bool lacks_message = Usable(state) && newest == nullptr;
+    return {.state = lacks_message ? InputState::kAwaited : state, .newest = newest};
   }
 
   /// The header of the first input. This input is the world's message that begins the step.

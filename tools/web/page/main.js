@@ -102,7 +102,8 @@ class Page {
     this.link = readFragment(hash);
     this.token = takeToken(hash);
     const isSame = !this.wire.moveTo(socketUrl(location, this.token));
-    if (isSame && this.store && !this.early) this.openLink();  // else when the history has come
+    // A live page that waits for its history opens the link after it.
+    if (isSame && this.store && !this.early) this.openLink();
   }
 
   actions() {

@@ -97,8 +97,8 @@ TEST(ProcessGroupTest, HasActivityWhileAProcessComputesAndNoneWhileItIsStopped) 
   const pid_t pid = StartScript(group, Role::kWorld, "while :; do :; done");
   const auto begin = group.ActivityOf(pid);
   ASSERT_TRUE(begin);
-  // The process has no more than a few context switches in the time of this test. So only its
-  // processor time, in ns, makes the number grow by this much.
+  // The process has far fewer context switches in the time of this test. So only its processor
+  // time, in ns, makes the number grow by this much.
   constexpr std::int64_t kMuch = 10'000'000;
   const TimePoint end = Clock::now() + kPatience;
   while (*group.ActivityOf(pid) < *begin + kMuch && Clock::now() < end) {
