@@ -18,15 +18,13 @@ std::optional<double> Root(std::optional<double> mean_square) {
 }
 
 /// The sample of a step without HOST_COMMAND, with the values of the HOST_COMMAND before.
-/// @param stops whether the vehicle has lost this input, and makes a minimal risk manoeuvre
-Sample WithCommandOf(const Sample& before, const Sample& sample, bool stops) {
+Sample WithCommandOf(const Sample& before, const Sample& sample) {
   Sample filled = sample;
   filled.command_mps2 = before.command_mps2;
   filled.lambda_automation = before.lambda_automation;
   filled.lambda_human = before.lambda_human;
   filled.doc = before.doc;
   filled.threshold = before.threshold;
-  if (stops) filled.lambda_automation = filled.lambda_human = 0;
   return filled;
 }
 
@@ -46,21 +44,28 @@ double CompromisedSafety(const Sample& sample) {
 
 MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
     : handover_s_(scenario.measures.handover_s),
-      command_lost_s_(scenario.health.lost_periods * scenario.step_s),
+      step_s_(scenario.step_s),
+      command_lost_s_(std::max(scenario.health.stale_periods, scenario.health.lost_periods) *
+                      scenario.step_s),
       host_(scenario.measures),
       follower_(scenario.measures),
       detection_(scenario),
       track_(scenario) {}
 
 // In real time a step may lack HOST_COMMAND. The vehicle then keeps the last command until its
-// input counts as lost.
+// input counts as lost. From then on it makes a minimal risk manoeuvre, in which it stays. The
+// command of a step acts until the next step, so the age of the command at the end of the step
+// decides.
 void MetricsAccumulator::Add(const Sample& sample) {
-  if (!std::isnan(sample.lambda_human)) {
-    commanded_s_ = sample.time_s;
-    return AddStep(sample);
-  }
-  const bool stops = sample.time_s - commanded_s_.value_or(sample.time_s) > command_lost_s_;
-  AddStep(WithCommandOf(previous_.value_or(kBeforeTheFirstCommand), sample, stops));
+  const bool has_command = !std::isnan(sample.lambda_human);
+  if (has_command) commanded_s_ = sample.time_s;
+  const double since_s = commanded_s_.value_or(previous_ ? first_time_s_ : sample.time_s);
+  stops_ = stops_ || (!has_command && sample.time_s + step_s_ - since_s > command_lost_s_);
+  if (has_command && !stops_) return AddStep(sample);
+  Sample filled =
+      has_command ? sample : WithCommandOf(previous_.value_or(kBeforeTheFirstCommand), sample);
+  if (stops_) filled.lambda_automation = filled.lambda_human = 0;
+  AddStep(filled);
 }
 
 // The command of a step is applied only in the next step. So the jerk of a step belongs to the

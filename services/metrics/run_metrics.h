@@ -151,8 +151,10 @@ class MetricsAccumulator {
   void AddSensing(const Sample& sample);
 
   double handover_s_;
+  double step_s_;
   double command_lost_s_;              // the vehicle loses a command that is older
   std::optional<double> commanded_s_;  // time of the last step with a command
+  bool stops_ = false;                 // whether the vehicle has lost the command
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;

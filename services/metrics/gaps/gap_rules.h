@@ -56,7 +56,7 @@ bool IsKnown(std::string_view measure, const V& value,
 bool AreTakeOversKnown(const Lack& lack);
 
 /// Whether the measures of requests are known, and the log has every step in which a request can
-/// begin. So the number of requests is known, too.
+/// begin. So the number of requests is known, too, except those that emergency braking hides.
 bool AreAllTakeOversKnown(const Lack& lack);
 
 }  // namespace fogline::metrics

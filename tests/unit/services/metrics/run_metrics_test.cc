@@ -241,8 +241,11 @@ TEST(MeasureTest, AStepWithoutACommandCountsLikeTheStepBefore) {
   // A command that is too old is lost, and the vehicle stops by itself.
   auto silent = run;
   for (std::size_t k = 1; k < silent.size(); ++k) silent[k].lambda_human = kNone;
-  EXPECT_EQ(metrics::Measure(silent, scenario).human_time_s, 3 * kStep_s);
-  EXPECT_EQ(metrics::Measure(silent, scenario).minimal_risk_s, 2 * kStep_s);
+  EXPECT_EQ(metrics::Measure(silent, scenario).human_time_s, 2 * kStep_s);
+  EXPECT_EQ(metrics::Measure(silent, scenario).minimal_risk_s, 3 * kStep_s);
+  silent[5].lambda_human = 1;  // too late: the vehicle stays in its manoeuvre
+  EXPECT_EQ(metrics::Measure(silent, scenario).minimal_risk_s, 3 * kStep_s);
+  EXPECT_EQ(metrics::Measure(silent, scenario).transfers, 1);
   // Before the first command, the automation drives.
   run[0].lambda_human = run[0].lambda_automation = run[0].doc = run[0].threshold = kNone;
   EXPECT_EQ(metrics::Measure(run, scenario).human_time_s, whole.human_time_s - kStep_s);
