@@ -55,7 +55,9 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
 ///
 /// If the commands of the first steps are missing, the earlier events are unknown. The first entry
 /// then says which mode the first command has. requests() does not contain a request that may be
-/// open in this command, because the step of the request is unknown (BeganInRequest()).
+/// open in this command, because the step of the request is unknown (BeganInRequest()). For the
+/// same reason requests() does not contain a request that begins behind emergency braking, or in a
+/// gap of the log, and has gone on when its mode is seen again.
 ///
 /// The mode of a command says whether the driver has a share of the authority, and lambda_H is this
 /// share. This share may be 0 at first, and may grow later. So two different events belong to a
@@ -99,7 +101,8 @@ class TakeOverLog {
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
   void NoteUnasked(std::int8_t from, std::int8_t to);
   void Transfer(const arbitration_t& command);
-  /// Whether the log lacks the commands just before this command, and a request began in this gap.
+  /// Whether a request began just before this command, where the log lacks commands or emergency
+  /// braking hid the mode.
   bool HidesRequest(const arbitration_t& command, std::int8_t from) const;
   void Drive(const arbitration_t& command, std::optional<double> human_mps2);
 

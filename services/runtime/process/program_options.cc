@@ -33,10 +33,10 @@ void ReadAsDecimal(CLI::Option& option) {
   option.transform(CLI::Validator(
       [](std::string& text) -> std::string {
         const bool is_negative = text.starts_with('-');
-        const std::string digits = text.substr(is_negative ? 1 : 0);
+        const std::string digits = text.substr(is_negative || text.starts_with('+') ? 1 : 0);
         // Texts with other characters are no whole number, or have a prefix such as 0x.
         if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) {
-          return QuoteShort(text) + " is no whole number";
+          return QuoteShort(text) + " is no decimal whole number";
         }
         const std::size_t first = std::min(digits.find_first_not_of('0'), digits.size() - 1);
         text = (is_negative ? "-" : "") + digits.substr(first);

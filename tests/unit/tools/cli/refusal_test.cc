@@ -194,14 +194,15 @@ class IgnoredValuesTest : public testing::Test {
 };
 
 TEST_F(IgnoredValuesTest, WholeNumbersAreDecimal) {
-  for (const auto& [text, jobs] : {std::pair("010", 10), {"08", 8}, {"0", 0}, {"-07", -7}}) {
+  for (const auto& [text, jobs] :
+       {std::pair("010", 10), {"08", 8}, {"0", 0}, {"-07", -7}, {"+5", 5}}) {
     EXPECT_EQ(Of({"run", "paper.json", "--jobs", text}), "");
     EXPECT_EQ(jobs_, jobs) << text;
   }
   for (const std::string text : {"0x10", "1e3", "2.5", "two"}) {
     EXPECT_EQ(Of({"run", "paper.json", "--jobs", text}), "fogline run: error: --jobs: \"" + text +
-                                                             "\" is no whole number (see fogline "
-                                                             "run --help)");
+                                                             "\" is no decimal whole number (see "
+                                                             "fogline run --help)");
   }
 }
 
