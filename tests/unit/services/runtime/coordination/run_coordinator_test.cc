@@ -277,20 +277,20 @@ TEST_F(RunCoordinatorTest, AllowsAWorldThatIsStartedAgainOneStepMore) {
 }
 
 TEST_F(RunCoordinatorTest, FollowsAWorldWhoseClockIsALittleFast) {
-  constexpr Duration kPeriod = std::chrono::microseconds(100);
+  constexpr Duration kFastPeriod = std::chrono::microseconds(100);
   runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
                                                       .scenario_text = script_.text(),
                                                       .steps = 1'000'000,
                                                       .pace = 1,
                                                       .realtime = true,
-                                                      .period = kPeriod});
+                                                      .period = kFastPeriod});
   BeAtStep(-1);
   coordinator.Poll(Clock::now());
   const TimePoint begin = Clock::now();
   // After this time a clock that is 1200 ppm fast is 12 periods ahead.
   constexpr Duration kLong = milliseconds(1000);
   while (Clock::now() < begin + kLong) {
-    const double periods = Seconds(Clock::now() - begin) / Seconds(kPeriod);
+    const double periods = Seconds(Clock::now() - begin) / Seconds(kFastPeriod);
     const auto step = static_cast<std::int64_t>(periods * (1 + 1200e-6));
     role(Role::kWorld).header.step = step;
     role(Role::kWorld).state = status_t::RUNNING;
