@@ -6,7 +6,6 @@ import json
 import unittest
 
 import fogline_lab as fl
-from fogline_lab.program import call_json
 from fogline_lab.role import RoleFailed, _Factory
 
 SCENARIO = json.dumps({"step_s": 0.1, "driver": {"readiness": 0.7}})
@@ -28,9 +27,9 @@ def step_of(kind: type[fl.Role], step):
 
 class RoleTest(unittest.TestCase):
     def test_every_role_but_the_recorder_has_a_class(self):
-        roles = [one["name"] for one in call_json("graph")["roles"]]
         self.assertEqual([one.ROLE for one in fl.ROLES],
-                         [one for one in roles if one not in ("runner", "recorder")])
+                         ["world", "radar", "lidar", "fusion", "acc", "driver", "arbitrator",
+                          "follower"])
         self.assertEqual(fl.Fusion.READS, (fl.ego_t, fl.radar_t, fl.lidar_t))
         self.assertEqual(fl.Driver.ON_DEMAND, fl.arbitration_t)
 
