@@ -31,6 +31,15 @@ class RunCoordinatorTest : public testing::Test {
     }
   }
 
+  /// The options of a run in real time whose steps have this period.
+  runtime::RunCoordinatorOptions InRealtime(std::int64_t steps, Duration period) const {
+    return {.run_id = Script::kRunId,
+            .scenario_text = script_.text(),
+            .steps = steps,
+            .pace = 1,
+            .realtime = true,
+            .period = period};
+  }
   status_t& role(Role role) { return roles_[static_cast<std::size_t>(role)]; }
   void SayStatus(Role who) {
     ++role(who).sequence;

@@ -235,12 +235,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
 }
 
 TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) {
-  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                                      .scenario_text = script_.text(),
-                                                      .steps = 500,
-                                                      .pace = 1,
-                                                      .realtime = true,
-                                                      .period = std::chrono::hours(1)});
+  runtime::RunCoordinator coordinator(script_.bus(), InRealtime(500, std::chrono::hours(1)));
   const auto say = [&](std::int64_t step) {
     role(Role::kRadar).header.step = step;
     SayStatus(Role::kRadar);
@@ -256,12 +251,7 @@ TEST_F(RunCoordinatorTest, RefusesInRealTimeAStepThatTheClockCannotHaveReached) 
 }
 
 TEST_F(RunCoordinatorTest, AllowsAWorldThatIsStartedAgainOneStepMore) {
-  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                                      .scenario_text = script_.text(),
-                                                      .steps = 500,
-                                                      .pace = 1,
-                                                      .realtime = true,
-                                                      .period = std::chrono::hours(1)});
+  runtime::RunCoordinator coordinator(script_.bus(), InRealtime(500, std::chrono::hours(1)));
   BeAtStep(-1);
   coordinator.Poll(Clock::now());
   BeAtStep(2);
@@ -278,12 +268,7 @@ TEST_F(RunCoordinatorTest, AllowsAWorldThatIsStartedAgainOneStepMore) {
 
 TEST_F(RunCoordinatorTest, FollowsAWorldWhoseClockIsALittleFast) {
   constexpr Duration kFastPeriod = std::chrono::microseconds(100);
-  runtime::RunCoordinator coordinator(script_.bus(), {.run_id = Script::kRunId,
-                                                      .scenario_text = script_.text(),
-                                                      .steps = 1'000'000,
-                                                      .pace = 1,
-                                                      .realtime = true,
-                                                      .period = kFastPeriod});
+  runtime::RunCoordinator coordinator(script_.bus(), InRealtime(1'000'000, kFastPeriod));
   BeAtStep(-1);
   coordinator.Poll(Clock::now());
   const TimePoint begin = Clock::now();
